@@ -1,0 +1,13 @@
+//! Spaces, bounds, colour, projection, and functions that give the same bits on every machine.
+
+pub mod angle;
+pub mod approx;
+pub mod bounds;
+pub mod colour;
+pub mod rounding;
+pub mod simd;
+pub mod view;
+
+pub use bounds::Bounds;
+pub use rounding::round_to_f32;
+pub use view::{Projection, View};
