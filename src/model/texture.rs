@@ -1,0 +1,151 @@
+//! Textures: 8-bit texels, a mip chain in linear light, and how they are sampled.
+
+pub mod checker;
+mod mips;
+
+use std::mem::size_of_val;
+use std::sync::Arc;
+
+/// What happens between texels and mip levels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Filter {
+    /// The nearest texel of level 0.
+    Nearest,
+    /// Bilinear in the nearest mip level.
+    Bilinear,
+    /// Bilinear in the two nearest levels, then between them.
+    Trilinear,
+}
+
+/// What happens outside the unit square.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// The picture repeats.
+    Repeat,
+    /// The border texel goes on.
+    Clamp,
+    /// The picture repeats, every second time mirrored.
+    Mirror,
+}
+
+/// How the bytes of a level 0 texel become numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ColorSpace {
+    /// Red, green and blue are sRGB-encoded; alpha is linear.
+    Srgb,
+    /// All four channels are `code / 255`.
+    Linear,
+}
+
+/// Level 0 as it was decoded. Rows run top to bottom, texels are red, green, blue, alpha.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// Texels in a row, 1–16384.
+    pub width: u32,
+    /// Rows, 1–16384.
+    pub height: u32,
+    /// `width × height` texels.
+    pub texels: Vec<[u8; 4]>,
+}
+
+/// A mip level below 0, in linear light: 16 bits a channel, `65535` is 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MipLevel {
+    /// Texels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width × height` texels, red, green, blue, alpha.
+    pub texels: Vec<[u16; 4]>,
+}
+
+/// Texels and how to sample them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// Level 0, shared by every texture made of the same file.
+    pub image: Arc<Image>,
+    /// How level 0 is decoded; the mips are linear already.
+    pub color_space: ColorSpace,
+    /// Levels 1, 2, … down to 1 × 1; empty for [`Filter::Nearest`].
+    pub mips: Arc<Vec<MipLevel>>,
+    /// Between texels.
+    pub filter: Filter,
+    /// Outside the unit square, along u and v.
+    pub wrap: [Wrap; 2],
+    /// Texture coordinates are scaled by this, then moved by `offset` (MTL `-s` and `-o`); 1 and 0 else.
+    pub scale: [f64; 2],
+    /// See `scale`.
+    pub offset: [f64; 2],
+}
+
+impl Image {
+    /// Whether every texel has alpha 255.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.texels.iter().all(|texel| texel[3] == u8::MAX)
+    }
+
+    /// The same size, with channel `channel` (0–3) of every texel as an opaque grey.
+    #[must_use]
+    pub fn channel_as_grey(&self, channel: usize) -> Self {
+        let grey = |texel: &[u8; 4]| {
+            let value = texel[channel.min(3)];
+            [value, value, value, u8::MAX]
+        };
+        Self { width: self.width, height: self.height, texels: self.texels.iter().map(grey).collect() }
+    }
+
+    /// Bytes of memory it holds.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        size_of_val(self.texels.as_slice()) as u64
+    }
+}
+
+impl Texture {
+    /// A texture over the unit square, with the mip chain that `filter` needs.
+    #[must_use]
+    pub fn new(image: Arc<Image>, color_space: ColorSpace, filter: Filter, wrap: [Wrap; 2]) -> Self {
+        let mips = match filter {
+            Filter::Nearest => Vec::new(),
+            Filter::Bilinear | Filter::Trilinear => mips::chain(&image, color_space),
+        };
+        Self { image, color_space, mips: Arc::new(mips), filter, wrap, scale: [1.0; 2], offset: [0.0; 2] }
+    }
+
+    /// The same texture under scaled and moved coordinates; texels and mips are shared.
+    #[must_use]
+    pub fn placed(&self, scale: [f64; 2], offset: [f64; 2]) -> Self {
+        Self { scale, offset, ..self.clone() }
+    }
+
+    /// Bytes of memory its image and mips hold, whoever shares them.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let mips: usize = self.mips.iter().map(|level| size_of_val(level.texels.as_slice())).sum();
+        self.image.bytes() + mips as u64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image() -> Arc<Image> {
+        Arc::new(Image { width: 4, height: 2, texels: vec![[10, 20, 30, 255]; 8] })
+    }
+
+    #[test]
+    fn nearest_needs_no_mips() {
+        let texture = Texture::new(image(), ColorSpace::Srgb, Filter::Nearest, [Wrap::Repeat; 2]);
+        assert!(texture.mips.is_empty());
+        assert_eq!(texture.bytes(), 32);
+    }
+
+    #[test]
+    fn bytes_count_the_mips() {
+        let texture = Texture::new(image(), ColorSpace::Srgb, Filter::Trilinear, [Wrap::Clamp; 2]);
+        assert_eq!(texture.mips.len(), 2);
+        assert_eq!(texture.bytes(), 32 + 2 * 8 + 8);
+    }
+}
