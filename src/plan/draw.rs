@@ -1,0 +1,136 @@
+//! What is drawn: instances placed in the scene, and the surface of each of their material slots.
+
+use crate::math::Bounds;
+use crate::model::{Mesh, Shading, Texture};
+use crate::scene::{Cull, Instance, Scene};
+use glam::{DMat3, DVec3, Vec3};
+use std::sync::Arc;
+
+/// One instance as the geometry stage draws it.
+#[derive(Clone, Debug)]
+pub struct Item {
+    /// What to draw.
+    pub mesh: Arc<Mesh>,
+    /// Linear part of model → anchored space.
+    pub linear: DMat3,
+    /// Anchored position of the mesh's stored zero.
+    pub origin: DVec3,
+    /// Whether the placement turns right hands into left ones, so that fronts wind clockwise. It
+    /// cannot be told from a `linear` that flattens.
+    pub mirrored: bool,
+    /// For each of the mesh's slots: which draw its triangles belong to, and what is culled.
+    pub slots: Vec<Slot>,
+}
+
+impl Item {
+    /// Places `instance` as it is at time `t` (seconds).
+    #[must_use]
+    pub fn new(scene: &Scene, instance: &Instance, t: f64, slots: Vec<Slot>) -> Self {
+        let mesh = scene.mesh(instance).clone();
+        let linear = instance.linear(t);
+        let origin = instance.origin(&mesh, linear);
+        Self { mesh, linear, origin, mirrored: instance.is_mirrored(), slots }
+    }
+
+    /// Around it, anchored; `None` for a mesh without vertices.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds> {
+        Some(self.mesh.bounds?.transformed(self.linear, self.origin))
+    }
+
+    /// Working memory that drawing it takes, about: 25 bytes a vertex; 64 a triangle and as many for its
+    /// entries in tiles; and a list of tiles.
+    #[must_use]
+    pub fn frame_bytes(&self) -> u64 {
+        self.mesh.vertex_count() as u64 * 25 + self.mesh.triangles.len() as u64 * 128 + 6144
+    }
+
+    /// Takes model-space normals to normals in world axes, whatever the scale: the cofactor matrix,
+    /// which is the inverse transpose up to a factor and exists for a singular matrix too; negated
+    /// under a mirror, so that what points out stays out. Source: E. Lengyel, "Transforming
+    /// Normals", 2024.
+    #[must_use]
+    pub fn world_from_normal(&self) -> DMat3 {
+        let (a, b, c) = (self.linear.x_axis, self.linear.y_axis, self.linear.z_axis);
+        let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
+        if self.mirrored { -cofactors } else { cofactors }
+    }
+}
+
+/// What becomes of the triangles of one material slot.
+#[derive(Clone, Copy, Debug)]
+pub struct Slot {
+    /// Index into the plan's draws: what shades it.
+    pub draw: u32,
+    /// Which faces are left out.
+    pub cull: Cull,
+}
+
+/// One material on one instance, reduced to what changes its picture.
+#[derive(Clone, Debug)]
+pub struct Draw {
+    /// Index into the plan's items.
+    pub item: u32,
+    /// Index into the scene's instances.
+    pub instance: u32,
+    /// How it is shaded.
+    pub surface: Surface,
+}
+
+/// The variant of the shading kernels that a draw needs. What is `None` or zero is not computed.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// How it answers to light.
+    pub shading: Shading,
+    /// Diffuse reflectance; vertex colours and map multiply it.
+    pub diffuse: Vec3,
+    /// `None`: ambient light meets the diffuse colour.
+    pub ambient: Option<Vec3>,
+    /// Its own light.
+    pub emissive: Vec3,
+    /// The highlight; `None` where the material or its shading has none.
+    pub specular: Option<Specular>,
+    /// Multiplies `diffuse`.
+    pub diffuse_map: Option<Arc<Texture>>,
+    /// Multiplies `emissive`.
+    pub emissive_map: Option<Arc<Texture>>,
+    /// Whether vertex colours are read.
+    pub vertex_colors: bool,
+    /// Whether lights fall on it.
+    pub lit: bool,
+    /// Whether shadows fall on it.
+    pub receives_shadow: bool,
+    /// Whether whole turns of u or v change nothing, because every map repeats or mirrors.
+    pub periodic_uv: bool,
+}
+
+/// A highlight.
+#[derive(Clone, Debug)]
+pub struct Specular {
+    /// Specular reflectance.
+    pub color: Vec3,
+    /// Exponent.
+    pub shininess: f32,
+    /// Multiplies `color`.
+    pub map: Option<Arc<Texture>>,
+}
+
+impl Surface {
+    /// Whether any map is read.
+    #[must_use]
+    pub fn needs_uv(&self) -> bool {
+        self.maps().next().is_some()
+    }
+
+    /// Every map that is read.
+    pub fn maps(&self) -> impl Iterator<Item = &Arc<Texture>> {
+        let specular = self.specular.as_ref().and_then(|s| s.map.as_ref());
+        [self.diffuse_map.as_ref(), self.emissive_map.as_ref(), specular].into_iter().flatten()
+    }
+
+    /// Whether the interpolated normal is read.
+    #[must_use]
+    pub fn needs_normal(&self) -> bool {
+        self.lit || self.shading == Shading::Normal
+    }
+}

@@ -1,0 +1,248 @@
+//! What one frame needs: scene and request in, passes and draws out.
+//!
+//! Every option is settled here. Below the plan nothing asks again whether something is on, and
+//! nothing can fail but cancellation.
+
+mod draw;
+mod etag;
+pub mod request;
+mod shadow;
+mod surface;
+mod view;
+
+pub use draw::{Draw, Item, Slot, Specular, Surface};
+pub use request::{FrameRequest, Output, QueryFault};
+pub use shadow::{ShadowPass, orthonormal_basis};
+
+use crate::limits::Limits;
+use crate::math::View;
+use crate::model::Shading;
+use crate::scene::framing::{self, ResolvedCamera};
+use crate::scene::{Background, Cull, LightKind, Scene};
+use glam::Vec3;
+use request::BackgroundRequest;
+use std::sync::Arc;
+
+/// Everything that one frame needs, and nothing else.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What it is a picture of.
+    pub scene: Arc<Scene>,
+    /// Seconds.
+    pub t: f64,
+    /// What the picture shows.
+    pub output: Output,
+    /// The camera.
+    pub view: View,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Visible instances that reach into the view, in submission order.
+    pub items: Vec<Item>,
+    /// Their surfaces.
+    pub draws: Vec<Draw>,
+    /// Ambient radiance.
+    pub ambient: Vec3,
+    /// Lights that shine.
+    pub lights: Vec<PlannedLight>,
+    /// Shadow maps to draw.
+    pub shadows: Vec<ShadowPass>,
+    /// What is drawn where nothing else is.
+    pub background: Background,
+    /// Distances that 0 and 65535 stand for in `output=depth`.
+    pub depth_range: Option<[f64; 2]>,
+    /// Working memory that it will take.
+    bytes: u64,
+}
+
+/// A light that shines.
+#[derive(Clone, Debug)]
+pub struct PlannedLight {
+    /// Linear RGB.
+    pub radiance: Vec3,
+    /// Where its light comes from, anchored.
+    pub kind: LightKind,
+    /// Index into [`Plan::shadows`].
+    pub shadow: Option<u32>,
+}
+
+/// Why a frame cannot be planned.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// Query parameters that make no sense for this scene.
+    #[error("the query makes no sense for this scene")]
+    Query(Vec<QueryFault>),
+    /// More than the server gives to one frame.
+    #[error("{what} is {value}, over the limit of {limit}")]
+    TooLarge {
+        /// What is too large.
+        what: String,
+        /// How much there may be.
+        limit: u64,
+        /// How much it would be.
+        value: u64,
+        /// The setting that moves the limit.
+        setting: Option<&'static str>,
+    },
+}
+
+impl Plan {
+    /// Settles what a frame of `scene` needs.
+    ///
+    /// # Errors
+    /// [`PlanError`]: overrides that contradict the scene, or a frame over its limits.
+    pub fn new(scene: &Arc<Scene>, request: &FrameRequest, limits: &Limits) -> Result<Self, PlanError> {
+        let width = request.width.unwrap_or(scene.render.width);
+        let height = request.height.unwrap_or(scene.render.height);
+        check_picture(width, height, limits)?;
+        let t = request.t;
+        let background = background(scene, request)?;
+        let camera = camera(scene, request, width, height)?;
+        let bounds = scene.bounds(t);
+        let view = view::of_camera(&camera, bounds, width, height);
+        let is_color = request.output == Output::Color;
+        let shading = request.shading.or(scene.render.shading);
+        let mut plan = Self {
+            scene: scene.clone(),
+            t,
+            output: request.output,
+            view,
+            samples: if is_color { request.samples.unwrap_or(scene.render.samples) } else { 1 },
+            items: Vec::new(),
+            draws: Vec::new(),
+            ambient: scene.ambient,
+            lights: Vec::new(),
+            shadows: Vec::new(),
+            background: if is_color { background } else { Background::Color(Vec3::ZERO) },
+            depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
+            bytes: 0,
+        };
+        plan.charge(u64::from(width) * u64::from(height) * 4, limits)?;
+        plan.add_instances(shading, limits)?;
+        if plan.draws.iter().any(|draw| draw.surface.lit) {
+            plan.add_lights(limits)?;
+        }
+        Ok(plan)
+    }
+
+    /// Adds every visible instance that reaches into the view, with its surfaces.
+    fn add_instances(&mut self, shading: Option<Shading>, limits: &Limits) -> Result<(), PlanError> {
+        let scene = self.scene.clone();
+        for (index, instance) in scene.visible() {
+            let mesh = scene.mesh(instance);
+            let mut placed = Item::new(&scene, instance, self.t, Vec::new());
+            if !placed.bounds().is_some_and(|bounds| view::reaches(&self.view, bounds)) {
+                continue;
+            }
+            let item = number(self.items.len());
+            let slots = instance.materials.iter().map(|&material| {
+                let material = &scene.materials[material as usize];
+                let surface = surface::settle(material, mesh, instance.receives_shadow, shading, self.output);
+                let draw = number(self.draws.len());
+                self.draws.push(Draw { item, instance: number(index), surface });
+                Slot { draw, cull: if material.double_sided { Cull::None } else { scene.render.cull } }
+            });
+            placed.slots = slots.collect();
+            self.charge(placed.frame_bytes(), limits)?;
+            self.items.push(placed);
+        }
+        Ok(())
+    }
+
+    /// Adds the lights that shine, with the shadow maps that they need.
+    fn add_lights(&mut self, limits: &Limits) -> Result<(), PlanError> {
+        let scene = self.scene.clone();
+        let receives = self.draws.iter().any(|draw| draw.surface.receives_shadow && draw.surface.lit);
+        for light in scene.lights.iter().filter(|light| light.enabled && light.radiance != Vec3::ZERO) {
+            let pass = match (light.kind, light.shadow) {
+                (LightKind::Directional { direction }, Some(shadow)) if receives && scene.render.shadows => {
+                    shadow::plan(&scene, self.t, direction, &shadow)
+                }
+                _ => None,
+            };
+            let shadow = match pass {
+                Some(pass) => {
+                    self.charge(pass.frame_bytes(), limits)?;
+                    self.shadows.push(pass);
+                    Some(number(self.shadows.len() - 1))
+                }
+                None => None,
+            };
+            self.lights.push(PlannedLight { radiance: light.radiance, kind: light.kind, shadow });
+        }
+        Ok(())
+    }
+
+    /// Adds to the frame's working memory, and refuses what would not fit: a small document can ask
+    /// for any number of triangles.
+    fn charge(&mut self, bytes: u64, limits: &Limits) -> Result<(), PlanError> {
+        self.bytes = self.bytes.saturating_add(bytes);
+        if self.bytes <= limits.frame_bytes {
+            return Ok(());
+        }
+        Err(PlanError::TooLarge {
+            what: "working memory of the frame in bytes".to_owned(),
+            limit: limits.frame_bytes,
+            value: self.bytes,
+            setting: Some("RASTERD_MAX_FRAME_BYTES"),
+        })
+    }
+
+    /// Strong entity tag of the picture, in quotes: a function of its inputs and the program's
+    /// version alone.
+    #[must_use]
+    pub fn etag(&self) -> String {
+        etag::of(self)
+    }
+}
+
+/// An index: maps of a document and the materials of a mesh hold fewer than 2³² entries.
+fn number(index: usize) -> u32 {
+    u32::try_from(index).expect("fewer than 2³² entries")
+}
+
+fn check_picture(width: u32, height: u32, limits: &Limits) -> Result<(), PlanError> {
+    let too_large = |what: &str, limit: u64, value: u64| {
+        Err(PlanError::TooLarge { what: what.to_owned(), limit, value, setting: None })
+    };
+    let side = width.max(height);
+    if side > limits.picture_side {
+        return too_large("the picture's longer side in pixels", limits.picture_side.into(), side.into());
+    }
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > limits.picture_pixels {
+        return too_large("the number of pixels", limits.picture_pixels, pixels);
+    }
+    Ok(())
+}
+
+fn background(scene: &Scene, request: &FrameRequest) -> Result<Background, PlanError> {
+    match &request.background {
+        None => Ok(scene.background.clone()),
+        Some(BackgroundRequest::Transparent) => Ok(Background::Transparent),
+        Some(BackgroundRequest::Color(color)) => Ok(Background::Color(*color)),
+        Some(BackgroundRequest::Named(name)) => {
+            let found = scene.backgrounds.iter().find(|(known, _)| known == name);
+            found.map(|(_, background)| background.clone()).ok_or_else(|| {
+                let known: Vec<&str> = scene.backgrounds.iter().map(|(name, _)| name.as_str()).collect();
+                let detail = format!(
+                    "must be \"transparent\", rrggbb, or one of the scene's backgrounds [{}], is {name:?}",
+                    known.join(", ")
+                );
+                PlanError::Query(vec![QueryFault::new("background", detail)])
+            })
+        }
+    }
+}
+
+fn camera(
+    scene: &Scene,
+    request: &FrameRequest,
+    width: u32,
+    height: u32,
+) -> Result<ResolvedCamera, PlanError> {
+    framing::resolve(scene, request, width, height).map_err(|faults| {
+        PlanError::Query(
+            faults.into_iter().map(|fault| QueryFault::new(fault.parameter, fault.detail)).collect(),
+        )
+    })
+}

@@ -1,0 +1,105 @@
+//! What a client asks of one frame, as typed overrides of the scene's own settings.
+
+mod parse;
+mod query;
+
+pub use query::{Query, QueryFault};
+
+use crate::model::Shading;
+use glam::{DVec3, Vec3};
+
+/// Overrides of one frame. `None` means "as the scene has it". Positions are in world space.
+///
+/// [`FrameRequest::parse`] checks every value and what contradicts what; one made by hand must keep to
+/// the same rules.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameRequest {
+    /// Pixels in a row.
+    pub width: Option<u32>,
+    /// Rows.
+    pub height: Option<u32>,
+    /// Samples a pixel: 1, 2, 4, 8 or 16.
+    pub samples: Option<u32>,
+    /// Seconds; a single frame's default is 0.
+    pub t: f64,
+    /// JPEG quality, 1–100.
+    pub quality: Option<u8>,
+    /// What the picture shows.
+    pub output: Output,
+    /// Overrides every material.
+    pub shading: Option<Shading>,
+    /// Where the camera stands.
+    pub eye: Option<DVec3>,
+    /// What it looks at.
+    pub target: Option<DVec3>,
+    /// Vertical field of view in degrees.
+    pub fov_y_deg: Option<f64>,
+    /// Nearest distance drawn.
+    pub near: Option<f64>,
+    /// Farthest distance drawn.
+    pub far: Option<f64>,
+    /// Orthographic, with this full height of the view.
+    pub ortho_height: Option<f64>,
+    /// Moves the camera about its target.
+    pub orbit: Option<Orbit>,
+    /// Replaces the background.
+    pub background: Option<BackgroundRequest>,
+    /// What may be left out; the picture is the same whatever it says. `None`: as the program was
+    /// started.
+    pub elide: Option<Elide>,
+}
+
+impl Elide {
+    /// What [`Elide::Only`] may name: the steps that a frame can do without. This version has none.
+    pub const NAMES: [&str; 0] = [];
+}
+
+/// Which passes and steps may be left out where they would not change the picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Elide {
+    /// Everything that can be.
+    #[default]
+    All,
+    /// Nothing: every step runs.
+    None,
+    /// The ones of these [`Elide::NAMES`] alone.
+    Only(Vec<String>),
+}
+
+/// A place about the target: yaw 0 looks from +z, 90 from +x; pitch 90 from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// Degrees about the y axis.
+    pub yaw_deg: f64,
+    /// Degrees above the horizon.
+    pub pitch_deg: f64,
+    /// From the target; `None`: as it is.
+    pub distance: Option<f64>,
+}
+
+/// `background=` of a query.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BackgroundRequest {
+    /// `transparent`
+    Transparent,
+    /// `rrggbb`, as linear RGB.
+    Color(Vec3),
+    /// A name of the document's `backgrounds`.
+    Named(String),
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Output {
+    /// The shaded picture.
+    #[default]
+    Color,
+    /// 16-bit grey: distance along the viewing axis.
+    Depth,
+    /// World-space normals.
+    Normal,
+    /// The diffuse colour.
+    Albedo,
+    /// 16-bit grey: which instance.
+    Instance,
+}

@@ -1,0 +1,280 @@
+//! The frame query: text in, [`FrameRequest`] out, or every fault at once.
+
+use super::query::{in_range, integer, not_one_of, numbers, positive, quoted};
+use super::{BackgroundRequest, Elide, FrameRequest, Orbit, Output, Query, QueryFault};
+use crate::limits::Limits;
+use crate::math::colour::linear_from_srgb8;
+use crate::model::Shading;
+use crate::scene::document::{MAX_FOV_Y_DEG, MIN_FOV_Y_DEG};
+use glam::Vec3;
+use std::str::FromStr;
+
+/// Words of `shading`: those of a document.
+const SHADINGS: &[(&str, Shading)] = <Shading as crate::scene::document::words::Word>::WORDS;
+
+/// Words of `output`.
+const OUTPUTS: [(&str, Output); 5] = [
+    ("color", Output::Color),
+    ("depth", Output::Depth),
+    ("normal", Output::Normal),
+    ("albedo", Output::Albedo),
+    ("instance", Output::Instance),
+];
+
+const NOT_AVAILABLE: &str = "is not available in this version";
+
+impl FrameRequest {
+    /// Parameters of the contract that this version knows but does not serve.
+    pub const NOT_YET: [&str; 3] = ["preset", "max_ms", "max_error"];
+
+    /// The words that `shading` and `output` take; none for another parameter.
+    #[must_use]
+    pub fn words(parameter: &str) -> Vec<&'static str> {
+        match parameter {
+            "shading" => SHADINGS.iter().map(|(word, _)| *word).collect(),
+            "output" => OUTPUTS.iter().map(|(word, _)| *word).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Reads a frame query of decoded pairs.
+    ///
+    /// # Errors
+    /// Every fault at once: values out of range, contradictions, repeated and unknown names.
+    pub fn parse<'a>(pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self, Vec<QueryFault>> {
+        let mut query = Query::new(pairs);
+        let request = Self::read(&mut query);
+        query.finish().map(|()| request)
+    }
+
+    /// Reads the frame query's parameters out of a query that may hold others too. What is faulty is
+    /// noted there and left at its default.
+    pub fn read(query: &mut Query) -> Self {
+        let request = Self {
+            width: query.parsed("width", side),
+            height: query.parsed("height", side),
+            samples: query.one_of("samples", &[("1", 1), ("2", 2), ("4", 4), ("8", 8), ("16", 16)]),
+            t: query.number("t").unwrap_or(0.0),
+            quality: query.integer_in("quality", 1..=100).and_then(|quality| u8::try_from(quality).ok()),
+            output: query.parsed("output", output).unwrap_or_default(),
+            shading: query.one_of("shading", SHADINGS),
+            eye: query.point("eye"),
+            target: query.point("target"),
+            fov_y_deg: query.number_in("fov", MIN_FOV_Y_DEG..=MAX_FOV_Y_DEG),
+            near: query.positive("near"),
+            far: query.positive("far"),
+            ortho_height: query.positive("ortho"),
+            orbit: query.parsed("orbit", orbit),
+            background: query.parsed("background", background),
+            elide: query.parsed("elide", str::parse),
+        };
+        request.note_contradictions(query);
+        for name in Self::NOT_YET {
+            query.parsed(name, |_| Err::<(), _>(NOT_AVAILABLE.to_owned()));
+        }
+        request
+    }
+
+    fn note_contradictions(&self, query: &mut Query) {
+        if self.eye.is_some() && self.orbit.is_some() {
+            query.fault("orbit", "cannot be given together with eye: both place the camera");
+        }
+        if self.fov_y_deg.is_some() && self.ortho_height.is_some() {
+            query.fault("ortho", "cannot be given together with fov: both shape the view");
+        }
+        if self.eye.is_some() && self.eye == self.target {
+            query.fault("target", "must differ from eye");
+        }
+        if let (Some(near), Some(far)) = (self.near, self.far)
+            && far <= near
+        {
+            query.fault("far", format!("must be greater than near ({near}), is {far}"));
+        }
+    }
+}
+
+/// A side of a picture. One that is too long is the plan's matter, which says what moves the limit.
+fn side(text: &str) -> Result<u32, String> {
+    let pixels = integer(text)?;
+    if pixels == 0 { in_range(pixels, &(1..=Limits::default().picture_side)) } else { Ok(pixels) }
+}
+
+fn output(text: &str) -> Result<Output, String> {
+    match OUTPUTS.iter().find(|(word, _)| *word == text) {
+        Some((_, output)) => Ok(*output),
+        None if text == "wireframe" => Err(format!("wireframe {NOT_AVAILABLE}")),
+        None => Err(not_one_of(text, OUTPUTS.iter().map(|(word, _)| *word))),
+    }
+}
+
+/// `yaw,pitch[,distance]`
+fn orbit(text: &str) -> Result<Orbit, String> {
+    let (yaw_deg, pitch_deg, distance) = match *numbers(text)?.as_slice() {
+        [yaw, pitch] => (yaw, pitch, None),
+        [yaw, pitch, distance] => (yaw, pitch, Some(positive(distance)?)),
+        _ => {
+            return Err(format!("must be yaw,pitch or yaw,pitch,distance, is {text:?}"));
+        }
+    };
+    in_range(pitch_deg, &(-90.0..=90.0)).map_err(|detail| format!("pitch {detail}"))?;
+    Ok(Orbit { yaw_deg, pitch_deg, distance })
+}
+
+/// `transparent`, `rrggbb`, or a name; a name of six hexadecimal digits reads as a colour.
+fn background(text: &str) -> Result<BackgroundRequest, String> {
+    match text {
+        "" => Err("must be transparent, rrggbb or the name of a background, is empty".to_owned()),
+        "transparent" => Ok(BackgroundRequest::Transparent),
+        _ => {
+            Ok(colour(text)
+                .map_or_else(|| BackgroundRequest::Named(text.to_owned()), BackgroundRequest::Color))
+        }
+    }
+}
+
+/// Linear RGB of `rrggbb`.
+fn colour(text: &str) -> Option<Vec3> {
+    if text.len() != 6 || !text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+        return None;
+    }
+    let [_, r, g, b] = u32::from_str_radix(text, 16).ok()?.to_be_bytes();
+    #[expect(clippy::cast_possible_truncation, reason = "f64 to f32 rounds; the value lies in 0–1")]
+    let linear = |code: u8| linear_from_srgb8(code) as f32;
+    Some(Vec3::new(linear(r), linear(g), linear(b)))
+}
+
+/// `all`, `none`, or a list of names.
+impl FromStr for Elide {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "all" => Ok(Self::All),
+            "none" => Ok(Self::None),
+            _ => text.split(',').map(elidable).collect::<Result<_, _>>().map(Self::Only),
+        }
+    }
+}
+
+fn elidable(name: &str) -> Result<String, String> {
+    if Elide::NAMES.contains(&name) {
+        return Ok(name.to_owned());
+    }
+    let names =
+        if Elide::NAMES.is_empty() { "there are none yet".to_owned() } else { Elide::NAMES.join(", ") };
+    Err(format!("must be all, none, or names with commas between ({names}), is {}", quoted(name)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    fn faults(pairs: &[(&str, &str)]) -> Vec<String> {
+        let faults = FrameRequest::parse(pairs.iter().copied()).expect_err("a fault");
+        faults.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn an_empty_query_asks_for_nothing() {
+        assert_eq!(FrameRequest::parse([]), Ok(FrameRequest::default()));
+    }
+
+    #[test]
+    fn every_parameter_is_read() {
+        let request = FrameRequest::parse([
+            ("width", "320"),
+            ("height", "200"),
+            ("samples", "8"),
+            ("t", "-1.5"),
+            ("quality", "90"),
+            ("output", "depth"),
+            ("shading", "unlit"),
+            ("target", "0, 1,2"),
+            ("near", "0.5"),
+            ("far", "10"),
+            ("ortho", "3"),
+            ("orbit", "30,20,5"),
+            ("background", "ff0000"),
+            ("elide", "none"),
+        ]);
+        let expected = FrameRequest {
+            width: Some(320),
+            height: Some(200),
+            samples: Some(8),
+            t: -1.5,
+            quality: Some(90),
+            output: Output::Depth,
+            shading: Some(Shading::Unlit),
+            eye: None,
+            target: Some(DVec3::new(0.0, 1.0, 2.0)),
+            fov_y_deg: None,
+            near: Some(0.5),
+            far: Some(10.0),
+            ortho_height: Some(3.0),
+            orbit: Some(Orbit { yaw_deg: 30.0, pitch_deg: 20.0, distance: Some(5.0) }),
+            background: Some(BackgroundRequest::Color(Vec3::X)),
+            elide: Some(Elide::None),
+        };
+        assert_eq!(request, Ok(expected));
+    }
+
+    #[test]
+    fn all_faults_come_at_once() {
+        let faults = faults(&[("width", "0"), ("fov", "200"), ("samples", "3"), ("zoom", "2")]);
+        assert_eq!(faults.len(), 4, "{faults:?}");
+        assert_eq!(faults[1], "samples: must be one of 1, 2, 4, 8, 16, is \"3\"");
+        assert_eq!(faults[2], "fov: must lie in [0.001, 179.9], is 200");
+    }
+
+    #[test]
+    fn eye_and_orbit_contradict_each_other() {
+        let faults = faults(&[("eye", "1,2,3"), ("orbit", "0,0")]);
+        assert_eq!(faults, ["orbit: cannot be given together with eye: both place the camera"]);
+    }
+
+    #[test]
+    fn what_this_version_lacks_says_so() {
+        for pair in [("output", "wireframe"), ("preset", "draft"), ("max_ms", "5"), ("max_error", "1")] {
+            let faults = faults(&[pair]);
+            assert!(faults.len() == 1 && faults[0].ends_with(NOT_AVAILABLE), "{faults:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_left_out_is_no_name() {
+        assert_eq!("all".parse(), Ok(Elide::All));
+        for text in ["shadow", "all,none", "", "All"] {
+            let fault = text.parse::<Elide>().expect_err("a fault");
+            assert!(fault.contains("(there are none yet)"), "{fault}");
+        }
+    }
+
+    #[test]
+    fn a_side_of_nothing_names_the_largest_picture() {
+        let faults = faults(&[("width", "0"), ("height", "0")]);
+        assert_eq!(faults, ["width: must lie in [1, 16384], is 0", "height: must lie in [1, 16384], is 0"]);
+    }
+
+    #[test]
+    fn a_width_beyond_any_picture_is_left_to_the_plan() {
+        let request = FrameRequest::parse([("width", "123456789012")]).expect("a query");
+        assert_eq!(request.width, Some(u32::MAX));
+    }
+
+    #[test]
+    fn six_hexadecimal_digits_are_a_colour_and_anything_else_a_name() {
+        let read = |text: &str| FrameRequest::parse([("background", text)]).expect("a query").background;
+        assert_eq!(read("00FF00"), Some(BackgroundRequest::Color(Vec3::Y)));
+        assert_eq!(read("night"), Some(BackgroundRequest::Named("night".to_owned())));
+        assert_eq!(read("transparent"), Some(BackgroundRequest::Transparent));
+    }
+
+    proptest! {
+        #[test]
+        fn no_query_panics(name in "width|height|samples|t|quality|output|shading|eye|orbit|background|elide|x", value in ".{0,40}") {
+            let _ = FrameRequest::parse([(name.as_str(), value.as_str())]);
+        }
+    }
+}

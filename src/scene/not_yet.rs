@@ -1,0 +1,92 @@
+//! What the wire contract has and this version does not draw: accepted, checked, and said in the
+//! scene's warnings. A feature that is drawn loses its function here.
+
+use super::document::{BackgroundPart, MapUse, MaterialPart, ShadowPart, default_lights};
+use super::{Document, LightKind, Scene, ShadowFilter, Warning};
+use crate::model::Material;
+
+/// What a feature is called, and whether something has it.
+type Feature<T> = (&'static str, fn(&T) -> bool);
+
+/// Everything in the scene that is not drawn as asked.
+pub(super) fn warnings(document: &Document, scene: &Scene) -> Vec<Warning> {
+    let mut details = Vec::new();
+    details.extend(backgrounds(document));
+    details.extend(soft_shadows(document));
+    details.extend(point_shadows(scene));
+    details.extend(materials(document));
+    details.extend(mtl_materials(scene, document));
+    details.extend(post(document));
+    details.into_iter().map(|detail| Warning { file: None, line: None, detail }).collect()
+}
+
+fn backgrounds(document: &Document) -> Vec<String> {
+    let environment = &document.environment;
+    let parts = environment.backgrounds.values().chain(environment.chosen());
+    let mut details: Vec<_> = parts
+        .filter_map(|part| match part {
+            BackgroundPart::Sky { .. } => Some("sky"),
+            BackgroundPart::Cubemap { .. } => Some("cubemap"),
+            BackgroundPart::Equirect { .. } => Some("equirect"),
+            _ => None,
+        })
+        .map(|kind| {
+            format!("a background of type {kind} is not drawn by this version; the default gradient is")
+        })
+        .collect();
+    details.sort();
+    details.dedup();
+    details
+}
+
+fn soft_shadows(document: &Document) -> Option<String> {
+    // The sun of a document without lights is nobody's wish.
+    let is_soft = |shadow: &ShadowPart| matches!(shadow.filter, Some(ShadowFilter::Pcf | ShadowFilter::Pcss));
+    let asked = document.lights != default_lights()
+        && document.lights.values().any(|light| light.shadow.as_ref().is_some_and(is_soft));
+    asked
+        .then(|| "the shadow filters pcf and pcss are not drawn by this version; shadows are hard".to_owned())
+}
+
+fn point_shadows(scene: &Scene) -> Option<String> {
+    let casts = |kind: &LightKind| matches!(kind, LightKind::Point { .. });
+    let any = scene.lights.iter().any(|light| light.shadow.is_some() && casts(&light.kind));
+    any.then(|| "shadows of point lights are not drawn by this version".to_owned())
+}
+
+fn materials(document: &Document) -> Vec<String> {
+    let features: [Feature<MaterialPart>; 3] = [
+        ("transparency (opacity, opacity_map)", |m| m.opacity < 1.0 || m.map(MapUse::Opacity).is_some()),
+        ("alpha_cutoff", |m| m.alpha_cutoff.is_some()),
+        ("surface detail (normal_map, bump_map)", |m| {
+            m.map(MapUse::Normal).is_some() || m.map(MapUse::Bump).is_some()
+        }),
+    ];
+    let used = |test: fn(&MaterialPart) -> bool| {
+        document.materials.iter().find(|(_, m)| test(m)).map(|(name, _)| name)
+    };
+    features
+        .into_iter()
+        .filter_map(|(feature, test)| {
+            used(test).map(|name| format!("{feature} of the material {name:?} is not drawn by this version"))
+        })
+        .collect()
+}
+
+/// The same for materials that come from MTL files: those behind the default and the document's own.
+fn mtl_materials(scene: &Scene, document: &Document) -> Vec<String> {
+    let features: [Feature<Material>; 2] = [
+        ("transparency", |m| m.opacity < 1.0 || m.opacity_map.is_some()),
+        ("surface detail (norm, map_Bump)", |m| m.normal_map.is_some() || m.bump_map.is_some()),
+    ];
+    let of_files = scene.materials.get(1 + document.materials.len()..).unwrap_or_default();
+    features
+        .into_iter()
+        .filter(|(_, test)| of_files.iter().any(|material| test(material)))
+        .map(|(feature, _)| format!("{feature} in MTL files is not drawn by this version"))
+        .collect()
+}
+
+fn post(document: &Document) -> Option<String> {
+    (!document.post.is_empty()).then(|| "effects of post are not applied by this version".to_owned())
+}
