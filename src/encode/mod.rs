@@ -1,0 +1,5 @@
+//! Pixels to files.
+
+mod png;
+
+pub use png::png;

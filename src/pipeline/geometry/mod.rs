@@ -1,0 +1,80 @@
+//! Geometry: meshes in model space in, triangles in fixed-point screen space out, binned by tile.
+//!
+//! Every vertex is transformed once ([`vertex`]), triangles are culled, clipped ([`clip`]), snapped
+//! and set up ([`setup`]), and listed by the tiles they touch ([`bin`]). The same code serves the
+//! camera and the lights.
+
+pub mod bin;
+pub mod clip;
+pub mod setup;
+pub mod vertex;
+
+use super::work::{Cancelled, Work};
+use crate::math::View;
+use crate::plan::Item;
+use bin::{Chunk, TileGrid};
+
+/// Triangles of one task: enough to hide the task's cost, few enough to share out.
+const CHUNK_TRIANGLES: usize = 4096;
+
+/// What became of the triangles that went in. Every one has exactly one fate, or was clipped into
+/// any number of pieces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Triangles that went in.
+    pub triangles: u64,
+    /// Wholly outside one plane of the view volume.
+    pub outside: u64,
+    /// Facing the wrong way.
+    pub culled: u64,
+    /// No area after snapping, or a coordinate that is not a number.
+    pub degenerate: u64,
+    /// Touching no sample.
+    pub no_sample: u64,
+    /// Cut by the near plane, the far plane or the guard band.
+    pub clipped: u64,
+    /// Binned: what the tiles draw.
+    pub drawn: u64,
+}
+
+impl Counts {
+    /// Adds another's counts.
+    pub fn add(&mut self, o: &Self) {
+        self.triangles += o.triangles;
+        self.outside += o.outside;
+        self.culled += o.culled;
+        self.degenerate += o.degenerate;
+        self.no_sample += o.no_sample;
+        self.clipped += o.clipped;
+        self.drawn += o.drawn;
+    }
+}
+
+/// Everything that the tiles need to draw.
+#[derive(Debug)]
+pub struct Bins {
+    /// How the picture is cut into tiles.
+    pub grid: TileGrid,
+    /// In submission order.
+    pub chunks: Vec<Chunk>,
+    /// Sums over the chunks.
+    pub counts: Counts,
+}
+
+/// Transforms, culls, clips, snaps, sets up and bins the triangles of `items`.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn run(items: &[Item], view: &View, grid: TileGrid, work: &Work) -> Result<Bins, Cancelled> {
+    let vertices = vertex::transform(items, view, work)?;
+    let tasks = items.iter().enumerate().flat_map(|(i, item)| {
+        let count = item.mesh.triangles.len();
+        (0..count).step_by(CHUNK_TRIANGLES).map(move |from| (i, from..count.min(from + CHUNK_TRIANGLES)))
+    });
+    let chunks = work.map(tasks.collect(), Vec::new, |pairs, (i, range)| {
+        setup::process(&items[i], range, &vertices[i], view, &grid, pairs)
+    })?;
+    let mut counts = Counts::default();
+    chunks.iter().for_each(|chunk| counts.add(&chunk.counts));
+    Ok(Bins { grid, chunks, counts })
+}

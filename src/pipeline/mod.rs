@@ -1,0 +1,112 @@
+//! The rasterizing pipeline: a plan in, pixels out.
+//!
+//! ```text
+//! shadow ─ geometry ─ tiles (cover ─ shade ─ sky ─ resolve) ─ output
+//! ```
+//!
+//! All of it runs on the threads of a [`Work`], and gives the same bytes for any number of them and
+//! any SIMD level.
+
+pub mod geometry;
+mod output;
+mod pick;
+mod resolve;
+pub mod samples;
+pub mod shade;
+pub mod shadow;
+mod sky;
+mod stats;
+mod target;
+pub mod tiles;
+pub mod work;
+
+pub use pick::{Hit, pick};
+pub use stats::{Stats, Timings};
+pub use target::{Frame, Pixels};
+pub use work::{Cancelled, Work};
+
+use crate::plan::{Output, Plan};
+use geometry::Bins;
+use geometry::bin::TileGrid;
+use shade::Lighting;
+use shade::light::LightSource;
+use std::time::Instant;
+
+/// Draws one frame. The order of the lines is the order of the passes.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn render(plan: &Plan, work: &Work) -> Result<Frame, Cancelled> {
+    let mut timings = Timings::default();
+    let shadow_maps =
+        timed(&mut timings, "shadow", !plan.shadows.is_empty(), || shadow::render_maps(&plan.shadows, work))?;
+    let bins = timed(&mut timings, "geometry", true, || transform_clip_and_bin(plan, work))?;
+    match plan.output {
+        Output::Color | Output::Normal | Output::Albedo => {
+            draw_colors(plan, &bins, &shadow_maps, timings, work)
+        }
+        Output::Depth | Output::Instance => draw_values(plan, &bins, timings, work),
+    }
+}
+
+/// The camera's geometry, binned by tile.
+fn transform_clip_and_bin(plan: &Plan, work: &Work) -> Result<Bins, Cancelled> {
+    let grid = TileGrid::new(&plan.view, tiles::tile_shift(plan.samples), samples::pattern(plan.samples));
+    geometry::run(&plan.items, &plan.view, grid, work)
+}
+
+/// Draws a picture of colours: per tile cover → shade → sky → resolve → encode.
+fn draw_colors(
+    plan: &Plan,
+    bins: &Bins,
+    maps: &[shadow::ShadowMap],
+    mut timings: Timings,
+    work: &Work,
+) -> Result<Frame, Cancelled> {
+    let anchor = shade::anchor(plan.scene.bounds(plan.t), &plan.view);
+    let shared = tiles::Shared {
+        bins,
+        draws: &plan.draws,
+        items: &plan.items,
+        lighting: Lighting {
+            ambient: plan.ambient,
+            lights: plan.lights.iter().map(|light| LightSource::new(light, &plan.view, anchor)).collect(),
+            maps,
+            view: &plan.view,
+            anchor,
+        },
+        frames: plan.shadows.iter().map(shadow::frame).collect(),
+        background: sky::Background::new(&plan.background, &plan.view),
+        samples: plan.samples,
+    };
+    let mut pixels = vec![[0; 4]; plan.view.width as usize * plan.view.height as usize];
+    let began = Instant::now();
+    let times = tiles::draw(&shared, &mut pixels, work)?;
+    timings.push_tiles(milliseconds(began), &times);
+    let opaque = !shared.background.is_transparent();
+    let pixels = Pixels::Rgba8 { pixels, opaque };
+    Ok(Frame::new(plan, pixels, Stats::new(bins, times.shaded, maps.len()), timings))
+}
+
+/// Draws a picture of 16-bit values: distances or instances, straight from what each pixel sees.
+fn draw_values(plan: &Plan, bins: &Bins, mut timings: Timings, work: &Work) -> Result<Frame, Cancelled> {
+    let mut pixels = vec![0; plan.view.width as usize * plan.view.height as usize];
+    let began = Instant::now();
+    output::draw_values(plan, bins, &mut pixels, work)?;
+    timings.push("raster", milliseconds(began));
+    Ok(Frame::new(plan, Pixels::Gray16(pixels), Stats::new(bins, 0, 0), timings))
+}
+
+/// Runs a pass and notes its time, if it is one that this frame has.
+fn timed<T>(timings: &mut Timings, pass: &'static str, runs: bool, f: impl FnOnce() -> T) -> T {
+    let began = Instant::now();
+    let result = f();
+    if runs {
+        timings.push(pass, milliseconds(began));
+    }
+    result
+}
+
+fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}

@@ -1,0 +1,65 @@
+//! Resolve: the samples of a shared pixel to its colour.
+
+use super::tiles::fragments::Fragments;
+
+/// Fills the places of all pixels that more than one surface share, or none covers: with the mean of
+/// their samples. Uncovered samples show `sky`.
+pub fn resolve(
+    fragments: &Fragments,
+    sky: &[Vec<f32>; 3],
+    samples: u32,
+    side: usize,
+    colors: &mut [Vec<f32>; 3],
+) {
+    let own = side * side;
+    for (channel, sky) in colors.iter_mut().zip(sky) {
+        for &pixel in &fragments.sky {
+            channel[pixel as usize] = sky[pixel as usize];
+        }
+    }
+    for shared in &fragments.shared {
+        let range = shared.first as usize..(shared.first + shared.count) as usize;
+        for (channel, sky) in colors.iter_mut().zip(sky) {
+            let pixel = shared.pixel as usize;
+            let mut values = [sky[pixel]; 16];
+            for at in range.clone() {
+                let color = channel[own + at];
+                for (s, value) in values.iter_mut().enumerate() {
+                    if fragments.masks[at] >> s & 1 == 1 {
+                        *value = color;
+                    }
+                }
+            }
+            channel[pixel] = mean(&mut values[..samples as usize]);
+        }
+    }
+}
+
+/// Plain mean of 2ᵐ values, summed as a pairwise tree: exact if all are equal, so that a pixel with one
+/// surface can go without.
+fn mean(values: &mut [f32]) -> f32 {
+    let mut count = values.len();
+    let mut share = 1.0;
+    while count > 1 {
+        count /= 2;
+        share *= 0.5;
+        for i in 0..count {
+            values[i] = values[2 * i] + values[2 * i + 1];
+        }
+    }
+    values[0] * share
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_equal_samples_is_that_sample() {
+        for count in [1, 2, 4, 8, 16] {
+            for value in [0.1f32, 0.3, 65504.0, 1e-30] {
+                assert_eq!(mean(&mut [value; 16][..count]), value);
+            }
+        }
+    }
+}

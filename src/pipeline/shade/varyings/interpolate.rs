@@ -1,0 +1,250 @@
+//! Interpolation: records and fragments in, attributes of a block out.
+
+use super::Source;
+use super::records::{AREA, EDGES, ORIGIN, Records, SCALE, SHADOW};
+use crate::math::simd::*;
+use crate::pipeline::shade::{BLOCK, Fragment};
+
+/// Interpolated attributes of a block of fragments. Lanes beyond its length hold copies of the last.
+pub struct Varyings {
+    /// Unit normal in world axes, towards the viewer's side of the surface.
+    pub normal: [[f32; BLOCK]; 3],
+    /// Position relative to [`anchor`](crate::pipeline::shade::anchor), in world axes.
+    pub position: [[f32; BLOCK]; 3],
+    /// Texture coordinates.
+    pub uv: [[f32; BLOCK]; 2],
+    /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y in units per pixel.
+    pub uv_per_pixel: [[f32; BLOCK]; 4],
+    /// Vertex colour, linear RGB.
+    pub color: [[f32; BLOCK]; 3],
+    /// For each shadow map: texel x and y from the map's centre, and depth.
+    pub shadow: Vec<[[f32; BLOCK]; 3]>,
+}
+
+impl Default for Varyings {
+    fn default() -> Self {
+        Self {
+            normal: [[0.0; BLOCK]; 3],
+            position: [[0.0; BLOCK]; 3],
+            uv: [[0.0; BLOCK]; 2],
+            uv_per_pixel: [[0.0; BLOCK]; 4],
+            color: [[0.0; BLOCK]; 3],
+            shadow: Vec::new(),
+        }
+    }
+}
+
+/// Eight lanes' view of the records: either all of one triangle, or each of its own.
+struct Lanes<'a> {
+    records: &'a Records,
+    /// Record of each lane.
+    index: [usize; LANES],
+    uniform: bool,
+}
+
+impl Lanes<'_> {
+    #[inline(always)]
+    fn single<S: Simd>(&self, simd: S, field: usize) -> f32x8<S> {
+        let stride = self.records.layout.singles;
+        let all = &self.records.singles;
+        if self.uniform {
+            f32x8::splat(simd, all[self.index[0] * stride + field])
+        } else {
+            f32x8::from_fn(
+                simd,
+                #[inline(always)]
+                |lane| all[self.index[lane] * stride + field],
+            )
+        }
+    }
+
+    #[inline(always)]
+    fn double<S: Simd>(&self, simd: S, field: usize) -> f64x8<S> {
+        let stride = self.records.layout.doubles;
+        let all = &self.records.doubles;
+        if self.uniform {
+            f64x8::splat(simd, all[self.index[0] * stride + field])
+        } else {
+            f64x8::from_fn(
+                simd,
+                #[inline(always)]
+                |lane| all[self.index[lane] * stride + field],
+            )
+        }
+    }
+
+    /// Weighted mean of the values of three corners that lie `step` fields apart.
+    #[inline(always)]
+    fn mix<S: Simd>(&self, simd: S, weights: &[f32x8<S>; 3], field: usize, step: usize) -> f32x8<S> {
+        let corner = always(
+            #[inline(always)]
+            |i: usize| weights[i] * self.single(simd, field + i * step),
+        );
+        (corner(0) + corner(1)) + corner(2)
+    }
+
+    #[inline(always)]
+    fn mix3<S: Simd>(&self, simd: S, weights: &[f32x8<S>; 3], field: usize) -> Vec3x8<S> {
+        Vec3x8 {
+            x: self.mix(simd, weights, field, 3),
+            y: self.mix(simd, weights, field + 1, 3),
+            z: self.mix(simd, weights, field + 2, 3),
+        }
+    }
+}
+
+/// Interpolates the attributes of up to [`BLOCK`] fragments of one draw.
+#[inline(always)]
+pub fn interpolate<S: Simd>(
+    simd: S,
+    records: &Records,
+    source: &Source,
+    fragments: &[Fragment],
+    out: &mut Varyings,
+) {
+    out.shadow.resize(source.shadows.len(), [[0.0; BLOCK]; 3]);
+    for (group, at) in fragments.chunks(LANES).zip((0..).step_by(LANES)) {
+        let lane = always(
+            #[inline(always)]
+            |i: usize| &group[i.min(group.len() - 1)],
+        );
+        let index: [usize; LANES] = std::array::from_fn(|i| lane(i).record as usize);
+        let uniform = index.iter().all(|&i| i == index[0]);
+        let lanes = Lanes { records, index, uniform };
+        let x = f64x8::from_fn(
+            simd,
+            #[inline(always)]
+            |i| f64::from(lane(i).x),
+        );
+        let y = f64x8::from_fn(
+            simd,
+            #[inline(always)]
+            |i| f64::from(lane(i).y),
+        );
+        interpolate_eight(simd, &lanes, source, x, y, out, at);
+    }
+}
+
+#[inline(always)]
+fn interpolate_eight<S: Simd>(
+    simd: S,
+    lanes: &Lanes,
+    source: &Source,
+    x: f64x8<S>,
+    y: f64x8<S>,
+    out: &mut Varyings,
+    at: usize,
+) {
+    let layout = &lanes.records.layout;
+    // Edge functions relative to corner 0: whole numbers below 2⁵⁰, exact.
+    let (dx, dy) = (x - lanes.double(simd, ORIGIN), y - lanes.double(simd, ORIGIN + 1));
+    let edge = always(
+        #[inline(always)]
+        |i: usize| dx * lanes.double(simd, EDGES + 2 * i) + dy * lanes.double(simd, EDGES + 2 * i + 1),
+    );
+    let (e1, e2) = (edge(0), edge(1));
+    let e0 = lanes.double(simd, AREA) - e1 - e2;
+    let weight = always(
+        #[inline(always)]
+        |i: usize, e: f64x8<S>| e * lanes.double(simd, SCALE + i),
+    );
+    let l = [weight(0, e0), weight(1, e1), weight(2, e2)];
+    let sum = (l[0] + l[1]) + l[2];
+    let share = f64x8::splat(simd, 1.0) / sum;
+    let weights = [narrow(l[0] * share), narrow(l[1] * share), narrow(l[2] * share)];
+
+    for (map, coordinates) in out.shadow.iter_mut().enumerate() {
+        let field = SHADOW + 9 * map;
+        for (c, coordinate) in coordinates.iter_mut().enumerate() {
+            let difference = e1 * lanes.double(simd, field + 3 + c) + e2 * lanes.double(simd, field + 6 + c);
+            narrow(lanes.double(simd, field + c) + difference * share)
+                .store_slice(&mut coordinate[at..at + LANES]);
+        }
+    }
+    if source.surface.needs_normal() {
+        let n = lanes.mix3(simd, &weights, layout.normal);
+        let plane = Vec3x8 {
+            x: lanes.single(simd, layout.normal + 9),
+            y: lanes.single(simd, layout.normal + 10),
+            z: lanes.single(simd, layout.normal + 11),
+        };
+        // Opposite normals cancel: there the plane's own normal holds.
+        let cancelled = n.dot(n).simd_lt(f32x8::splat(simd, 1e-12));
+        plane.select(cancelled, n.normalize()).store(&mut out.normal, at);
+    }
+    if source.surface.lit {
+        let position = lanes.mix3(simd, &weights, layout.position);
+        position.store(&mut out.position, at);
+        if !source.shadows.is_empty() {
+            let lift = lift_to_round(simd, lanes, &weights, position);
+            lift_receivers(simd, source, lift, out, at);
+        }
+    }
+    if source.surface.vertex_colors {
+        lanes.mix3(simd, &weights, layout.color).store(&mut out.color, at);
+    }
+    if source.surface.needs_uv() {
+        let depth = narrow(sum);
+        let squared = depth * depth;
+        let (fx, fy) = (narrow(dx), narrow(dy));
+        for c in 0..2 {
+            let place = layout.uv_place + c;
+            let difference = e1 * lanes.double(simd, place + 2) + e2 * lanes.double(simd, place + 4);
+            let mut coordinate = lanes.double(simd, place) + difference * share;
+            if source.surface.periodic_uv {
+                // Without its whole turns where they change nothing (an even number: a mirrored
+                // texture repeats every second unit), so that f32 keeps the digits that count.
+                coordinate -= (coordinate * 0.5).floor() * 2.0;
+            }
+            narrow(coordinate).store_slice(&mut out.uv[c][at..at + LANES]);
+            let field = layout.uv + 3 * c;
+            let cross = lanes.single(simd, field + 2);
+            let along_x = (lanes.single(simd, field) + cross * fy) / squared;
+            let along_y = (lanes.single(simd, field + 1) - cross * fx) / squared;
+            along_x.store_slice(&mut out.uv_per_pixel[c][at..at + LANES]);
+            along_y.store_slice(&mut out.uv_per_pixel[2 + c][at..at + LANES]);
+        }
+    }
+}
+
+/// How far above its flat triangle the rounded surface runs that the corner normals stand for.
+///
+/// A light that grazes a sphere of triangles would find it in its own shadow as soon as it is behind
+/// a triangle's plane, long before the rounded surface turns away. Source: J. Hanika, "Hacking the
+/// Shadow Terminator", Ray Tracing Gems II, 2021.
+#[inline(always)]
+fn lift_to_round<S: Simd>(simd: S, lanes: &Lanes, weights: &[f32x8<S>; 3], position: Vec3x8<S>) -> f32x8<S> {
+    let layout = &lanes.records.layout;
+    let zero = f32x8::splat(simd, 0.0);
+    let mut lift = zero;
+    for (i, &weight) in weights.iter().enumerate() {
+        let field = always(
+            #[inline(always)]
+            |at: usize| Vec3x8 {
+                x: lanes.single(simd, at),
+                y: lanes.single(simd, at + 1),
+                z: lanes.single(simd, at + 2),
+            },
+        );
+        let (corner, normal) = (field(layout.position + 3 * i), field(layout.normal + 3 * i));
+        lift += weight * max((corner - position).dot(normal), zero);
+    }
+    min(lift, lanes.single(simd, layout.normal + 12))
+}
+
+/// Moves eight receivers by `lift` along their normals, in the coordinates of every shadow map.
+#[inline(always)]
+fn lift_receivers<S: Simd>(simd: S, source: &Source, lift: f32x8<S>, out: &mut Varyings, at: usize) {
+    if lift.simd_gt(f32x8::splat(simd, 0.0)).all_false() {
+        return;
+    }
+    let offset = Vec3x8::load(simd, &out.normal, at).scale(lift);
+    for (frame, coordinates) in source.shadows.iter().zip(&mut out.shadow) {
+        let columns = [frame.linear.x_axis, frame.linear.y_axis, frame.linear.z_axis].map(|c| c.as_vec3());
+        for (row, coordinate) in coordinates.iter_mut().enumerate() {
+            let moved = offset.x * columns[0][row] + offset.y * columns[1][row] + offset.z * columns[2][row];
+            let old = f32x8::from_slice(simd, &coordinate[at..at + LANES]);
+            (old + moved).store_slice(&mut coordinate[at..at + LANES]);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! One record a visible triangle: everything that interpolation reads, laid out for it.
+
+use super::corners::Corners;
+use super::{ShadowFrame, Source};
+use crate::math::{Projection, round_to_f32};
+use crate::pipeline::geometry::bin::Chunk;
+use crate::pipeline::geometry::setup::Triangle;
+use crate::plan::Surface;
+use glam::{DVec2, DVec3, Vec3};
+
+/// Where the parts of a record are. Parts that a surface does not need have no room.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    pub(super) normal: usize,
+    pub(super) position: usize,
+    pub(super) uv: usize,
+    pub(super) color: usize,
+    pub(super) singles: usize,
+    /// In the f64 part: texture coordinates, behind the shadow maps'.
+    pub(super) uv_place: usize,
+    pub(super) doubles: usize,
+}
+
+impl Layout {
+    fn new(surface: &Surface, shadows: usize) -> Self {
+        let mut at = 0;
+        let mut room = |needed: bool, n: usize| {
+            let start = at;
+            at += if needed { n } else { 0 };
+            start
+        };
+        // Three corner normals, the geometric one, and how far they round the triangle; three
+        // positions; the numerators of the derivatives of (u, v); three colours.
+        let normal = room(surface.needs_normal(), 13);
+        let position = room(surface.lit, 9);
+        let uv = room(surface.needs_uv(), 6);
+        let color = room(surface.vertex_colors, 9);
+        let uv_place = SHADOW + 9 * shadows;
+        let doubles = uv_place + if surface.needs_uv() { 6 } else { 0 };
+        Self { normal, position, uv, color, singles: at, uv_place, doubles }
+    }
+}
+
+// The f64 part of a record.
+pub(super) const ORIGIN: usize = 0;
+pub(super) const EDGES: usize = 2;
+pub(super) const AREA: usize = 6;
+pub(super) const SCALE: usize = 7;
+pub(super) const SHADOW: usize = 10;
+
+/// Records of the visible triangles of one draw in one tile.
+#[derive(Debug)]
+pub struct Records {
+    pub(super) layout: Layout,
+    pub(super) doubles: Vec<f64>,
+    pub(super) singles: Vec<f32>,
+}
+
+impl Records {
+    /// No records yet.
+    #[must_use]
+    pub fn new(source: &Source) -> Self {
+        Self {
+            layout: Layout::new(source.surface, source.shadows.len()),
+            doubles: Vec::new(),
+            singles: Vec::new(),
+        }
+    }
+
+    /// Adds the record of a triangle of `chunk`.
+    pub fn push(&mut self, source: &Source, t: &Triangle, chunk: &Chunk) {
+        let corners = Corners::new(source, t, chunk);
+        let scale = perspective_scale(source, t, &corners);
+        self.push_edges(t, scale);
+        let shadow_normal = corners.geometric_normal;
+        for frame in source.shadows {
+            self.push_shadow(source, frame, &corners, shadow_normal, scale);
+        }
+        if source.surface.needs_normal() {
+            let facing = if t.is_back() { -1.0 } else { 1.0 };
+            let normals = corners.normals(source);
+            for n in normals.into_iter().chain([corners.geometric_normal]) {
+                self.push_vec3((n * facing).as_vec3());
+            }
+            self.singles.push(round_to_f32(rise(&corners, &normals)));
+        }
+        if source.surface.lit {
+            corners.positions.iter().for_each(|p| self.push_vec3((p - source.anchor).as_vec3()));
+        }
+        if source.surface.needs_uv() {
+            self.push_uvs(&corners.uvs(source), t, scale);
+        }
+        if source.surface.vertex_colors {
+            corners.colors(source).into_iter().for_each(|c| self.push_vec3(c));
+        }
+    }
+
+    fn push_vec3(&mut self, v: Vec3) {
+        self.singles.extend_from_slice(&v.to_array());
+    }
+
+    /// Corner 0, the steps of the edge functions that vanish there, the area, and the factor of each
+    /// edge function that makes it a perspective weight.
+    fn push_edges(&mut self, t: &Triangle, scale: [f64; 3]) {
+        let [e1, e2] = t.edges_from_corner_0();
+        let origin = [f64::from(t.x[0]), f64::from(t.y[0])];
+        self.doubles.extend(origin.iter().chain(&e1).chain(&e2));
+        self.doubles.push(t.doubled_area());
+        self.doubles.extend(scale);
+    }
+
+    /// Map coordinates at corner 0, and how much corners 1 and 2 differ from them, times their scale.
+    fn push_shadow(
+        &mut self,
+        source: &Source,
+        frame: &ShadowFrame,
+        corners: &Corners,
+        normal: DVec3,
+        scale: [f64; 3],
+    ) {
+        // The offset points to the side that the light comes from.
+        let towards = if normal.dot(frame.direction) > 0.0 { -1.0 } else { 1.0 };
+        let along = |axis: usize| normal.dot(frame.offset[axis]).abs();
+        let lift = normal * (towards * (along(0) + along(1)));
+        let base = source.eye - frame.origin + lift;
+        let clearance = DVec3::new(0.0, 0.0, frame.clearance);
+        let [s0, s1, s2] = corners.positions.map(|p| frame.linear * (p + base) + clearance);
+        for v in [s0, (s1 - s0) * scale[1], (s2 - s0) * scale[2]] {
+            self.doubles.extend_from_slice(&v.to_array());
+        }
+    }
+
+    /// Coordinates at corner 0, how much corners 1 and 2 differ from them, times their scale, and the
+    /// numerators of their screen derivatives.
+    ///
+    /// With U = Σ lᵢuᵢ and D = Σ lᵢ linear over the screen, `∂(U/D)/∂x = (Uₓ D − U Dₓ) / D²`, whose
+    /// numerator is linear in y alone (and that of ∂/∂y in x alone): three numbers a coordinate, in
+    /// units per pixel.
+    fn push_uvs(&mut self, uv: &[DVec2; 3], t: &Triangle, scale: [f64; 3]) {
+        for v in [uv[0], (uv[1] - uv[0]) * scale[1], (uv[2] - uv[0]) * scale[2]] {
+            self.doubles.extend_from_slice(&v.to_array());
+        }
+        let [e1, e2] = t.edges_from_corner_0();
+        let e0 = [0.0 - e1[0] - e2[0], 0.0 - e1[1] - e2[1]];
+        let edges = [e0, e1, e2];
+        let slope =
+            |value: [f64; 3], axis: usize| (0..3).map(|i| edges[i][axis] * scale[i] * value[i]).sum::<f64>();
+        let at_0 = t.doubled_area() * scale[0];
+        let d = [slope([1.0; 3], 0), slope([1.0; 3], 1)];
+        for axis in 0..2 {
+            let value = uv.map(|uv| uv[axis]);
+            let g = [slope(value, 0), slope(value, 1)];
+            let along_x = (g[0] - value[0] * d[0]) * at_0;
+            let along_y = (g[1] - value[0] * d[1]) * at_0;
+            let cross = g[0] * d[1] - g[1] * d[0];
+            self.singles.extend([along_x, along_y, cross].map(|n| round_to_f32(n * 256.0)));
+        }
+    }
+}
+
+/// The factors kᵢ of the edge functions: `lᵢ = kᵢ Eᵢ` is in 0–1 and proportional to the perspective
+/// weight of corner i.
+fn perspective_scale(source: &Source, t: &Triangle, corners: &Corners) -> [f64; 3] {
+    let area = t.doubled_area();
+    match source.projection {
+        Projection::Orthographic => [1.0 / area; 3],
+        Projection::Perspective => {
+            let w = corners.positions.map(|p| p.dot(source.forward));
+            let nearest = w[0].min(w[1]).min(w[2]);
+            w.map(|w| nearest / w / area)
+        }
+    }
+}
+
+/// The most that the rounded surface can rise above a flat triangle, if its corner normals say that it
+/// stands for one: they lean apart, but no more than a smooth surface's would. Between two normals
+/// that differ by φ an arc of length e rises by e φ / 8; the estimate of [`super::interpolate`] by
+/// up to twice that.
+fn rise(corners: &Corners, normals: &[DVec3; 3]) -> f64 {
+    let smooth = normals.iter().all(|n| n.dot(corners.geometric_normal) > 0.8);
+    let apart =
+        |f: &dyn Fn(usize) -> DVec3| (0..3).map(|i| (f(i) - f((i + 1) % 3)).length()).fold(0.0, f64::max);
+    if smooth { apart(&|i| normals[i]) * apart(&|i| corners.positions[i]) * 0.25 } else { 0.0 }
+}

@@ -1,0 +1,92 @@
+//! What a frame cost and what it did.
+
+use super::geometry::{Bins, Counts};
+
+/// Seconds and counts of one tile, or of all of them added up.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TileTimes {
+    /// Coverage, depth, and the list of fragments.
+    pub raster: f64,
+    /// Attributes, textures, lights, shadow taps.
+    pub shade: f64,
+    /// The background.
+    pub sky: f64,
+    /// Samples to pixels to bytes.
+    pub resolve: f64,
+    /// Fragments shaded.
+    pub shaded: u64,
+}
+
+impl TileTimes {
+    /// Adds another's.
+    pub fn add(&mut self, o: &Self) {
+        self.raster += o.raster;
+        self.shade += o.shade;
+        self.sky += o.sky;
+        self.resolve += o.resolve;
+        self.shaded += o.shaded;
+    }
+}
+
+/// What a frame did.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stats {
+    /// Of the camera's pass.
+    pub geometry: Counts,
+    /// Fragments shaded.
+    pub shaded: u64,
+    /// Shadow maps drawn.
+    pub shadow_maps: u64,
+}
+
+impl Stats {
+    pub(super) fn new(bins: &Bins, shaded: u64, shadow_maps: usize) -> Self {
+        Self { geometry: bins.counts, shaded, shadow_maps: shadow_maps as u64 }
+    }
+
+    /// The entries of a `Render-Stats` header.
+    #[must_use]
+    pub fn entries(&self) -> [(&'static str, u64); 6] {
+        let g = &self.geometry;
+        [
+            ("triangles", g.triangles),
+            ("culled", g.outside + g.culled + g.degenerate + g.no_sample),
+            ("clipped", g.clipped),
+            ("drawn", g.drawn),
+            ("shaded", self.shaded),
+            ("shadow_maps", self.shadow_maps),
+        ]
+    }
+}
+
+/// Milliseconds a pass, in the order of the passes. A pass that did not run is absent.
+#[derive(Clone, Debug, Default)]
+pub struct Timings(Vec<(&'static str, f64)>);
+
+impl Timings {
+    /// Notes a pass.
+    pub fn push(&mut self, pass: &'static str, milliseconds: f64) {
+        self.0.push((pass, milliseconds));
+    }
+
+    /// Splits the wall time of the tile loop by its threads' time.
+    pub fn push_tiles(&mut self, wall_milliseconds: f64, times: &TileTimes) {
+        let parts = [
+            ("raster", times.raster),
+            ("shade", times.shade),
+            ("sky", times.sky),
+            ("resolve", times.resolve),
+        ];
+        let total: f64 = parts.iter().map(|part| part.1).sum();
+        for (pass, seconds) in parts {
+            if seconds > 0.0 {
+                self.push(pass, wall_milliseconds * seconds / total);
+            }
+        }
+    }
+
+    /// Every pass with its milliseconds.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        self.0.iter().copied()
+    }
+}
