@@ -1,0 +1,40 @@
+//! Why a job gave no picture.
+
+use crate::pipeline::Cancelled;
+use crate::plan::PlanError;
+use std::time::Duration;
+
+/// Why a job gave no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// The request does not fit the scene or the limits.
+    #[error("the frame cannot be planned")]
+    Plan(PlanError),
+    /// As many jobs wait as may.
+    #[error("the render queue is full ({0} frames wait)")]
+    Full(usize),
+    /// No job is taken any more.
+    #[error("the server is going down")]
+    Closing,
+    /// It took longer than this, waiting included.
+    #[error("the frame took longer than its deadline of {} s", .0.as_secs_f64())]
+    Deadline(Duration),
+    /// Whoever asked has gone.
+    #[error("the frame was cancelled")]
+    Cancelled,
+    /// A fault of ours; the panic's message is in the log.
+    #[error("the frame could not be drawn")]
+    Panicked,
+}
+
+impl From<PlanError> for JobError {
+    fn from(error: PlanError) -> Self {
+        Self::Plan(error)
+    }
+}
+
+impl From<Cancelled> for JobError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}

@@ -1,0 +1,251 @@
+//! The bridge between two worlds: tokio does I/O, rayon does pixels.
+//!
+//! In: a scene and a [`FrameRequest`]. Out: a finished picture, or why there is none. A job waits in a
+//! bounded [`Queue`], then runs on a thread of its own that drives the shared pool; its deadline and
+//! the caller that goes away both set the flag that the tile loop reads.
+
+mod cancel;
+mod draw;
+mod error;
+mod queue;
+
+pub(crate) use cancel::CancelOnDrop;
+pub use draw::{Draw, Format, Picture, Rendered};
+pub use error::JobError;
+pub use queue::{Queue, QueueDepth};
+
+use crate::limits::Limits;
+use crate::pipeline::{Hit, Work};
+use crate::plan::Output;
+use crate::plan::request::{Elide, QueryFault};
+use crate::plan::{FrameRequest, Plan, PlanError};
+use crate::scene::Scene;
+use crate::settings::{Machine, Settings, Simd};
+use fearless_simd::Level;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+use tokio::time::timeout_at;
+
+/// Draws frames, a few at a time, on one pool of threads. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Renderer {
+    engine: Arc<Engine>,
+    queue: Queue,
+    deadline: Duration,
+}
+
+/// What every job shares.
+struct Engine {
+    pool: rayon::ThreadPool,
+    level: Level,
+    elide: Elide,
+    limits: Limits,
+    draw: Box<Draw>,
+}
+
+impl Renderer {
+    /// A renderer that draws with the pipeline.
+    ///
+    /// # Errors
+    /// When the system refuses the pool's threads.
+    pub fn new(settings: &Settings) -> std::io::Result<Self> {
+        Self::with_draw(settings, Box::new(draw::picture))
+    }
+
+    /// A renderer that draws with `draw` in the pipeline's place: a test's slow, panicking or
+    /// counting one.
+    ///
+    /// # Errors
+    /// When the system refuses the pool's threads.
+    pub fn with_draw(settings: &Settings, draw: Box<Draw>) -> std::io::Result<Self> {
+        Ok(Self {
+            engine: Arc::new(Engine::new(&settings.machine, settings.limits(), draw)?),
+            queue: Queue::new(settings.renders.get(), usize::from(settings.queue)),
+            deadline: settings.frame_seconds,
+        })
+    }
+
+    /// Where jobs wait; closing it ends admission.
+    #[must_use]
+    pub fn queue(&self) -> &Queue {
+        &self.queue
+    }
+
+    /// The limits that requests are held to.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.engine.limits
+    }
+
+    /// Threads that draw.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.engine.pool.current_num_threads()
+    }
+
+    /// Draws one frame when its turn comes.
+    ///
+    /// # Errors
+    /// See [`JobError`].
+    pub async fn render(
+        &self,
+        scene: Arc<Scene>,
+        request: FrameRequest,
+        format: Format,
+    ) -> Result<Rendered, JobError> {
+        let (mut rendered, waited) =
+            self.run(move |engine, cancel| engine.render(&scene, &request, format, cancel)).await?;
+        rendered.add_wait(waited);
+        Ok(rendered)
+    }
+
+    /// What is at pixel (`x`, `y`) of the frame that `request` asks for.
+    ///
+    /// # Errors
+    /// See [`JobError`].
+    pub async fn pick(
+        &self,
+        scene: Arc<Scene>,
+        request: FrameRequest,
+        x: u32,
+        y: u32,
+    ) -> Result<Option<Hit>, JobError> {
+        self.run(move |engine, cancel| engine.pick(&scene, &request, x, y, cancel))
+            .await
+            .map(|(pick, _)| pick)
+    }
+
+    /// The ETag that [`Renderer::render`] would answer with, without drawing and without a turn in
+    /// the queue.
+    ///
+    /// # Errors
+    /// [`JobError::Plan`] for a request that can't be planned, [`JobError::Panicked`].
+    pub async fn etag(&self, scene: Arc<Scene>, request: FrameRequest) -> Result<String, JobError> {
+        let engine = Arc::clone(&self.engine);
+        tokio::task::spawn_blocking(move || caught(|| Ok(engine.plan(&scene, &request)?.etag())))
+            .await
+            .map_err(|_| JobError::Panicked)?
+    }
+
+    /// Draws one frame on this thread, now: the same bytes without queue and deadline.
+    ///
+    /// # Errors
+    /// [`JobError::Plan`] and [`JobError::Panicked`].
+    pub fn render_now(
+        &self,
+        scene: &Arc<Scene>,
+        request: &FrameRequest,
+        format: Format,
+    ) -> Result<Rendered, JobError> {
+        caught(|| self.engine.render(scene, request, format, &AtomicBool::new(false)))
+    }
+
+    /// Runs `task` on a blocking thread when its turn comes. Dropping the returned future cancels it.
+    /// The turn ends with the task itself, not with the caller's patience.
+    async fn run<T: Send + 'static>(
+        &self,
+        task: impl FnOnce(&Engine, &AtomicBool) -> Result<T, JobError> + Send + 'static,
+    ) -> Result<(T, Duration), JobError> {
+        let arrived = Instant::now();
+        let late = || JobError::Deadline(self.deadline);
+        let end = (arrived + self.deadline).into();
+        let turn = timeout_at(end, self.queue.turn()).await.map_err(|_| late())??;
+        let waited = arrived.elapsed();
+
+        let cancel = CancelOnDrop::default();
+        let flag = cancel.flag();
+        let engine = Arc::clone(&self.engine);
+        let job = tokio::task::spawn_blocking(move || {
+            let _turn = turn;
+            caught(|| task(&engine, &flag))
+        });
+        let done = timeout_at(end, job).await.map_err(|_| late())?;
+        done.map_err(|_| JobError::Panicked)?.map(|value| (value, waited))
+    }
+}
+
+impl Engine {
+    fn new(machine: &Machine, limits: Limits, draw: Box<Draw>) -> std::io::Result<Self> {
+        // 0 is rayon's word for "as many as the machine runs at once".
+        let threads = machine.threads.map_or(0, std::num::NonZeroUsize::get);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|index| format!("draw-{index}"))
+            // A panic that no scope carries to its caller would abort the process otherwise.
+            .panic_handler(|_| tracing::error!("a drawing thread panicked"))
+            .build()
+            .map_err(std::io::Error::other)?;
+        let level = machine.simd.unwrap_or_else(Simd::best).level();
+        Ok(Self { pool, level, elide: machine.elide.clone(), limits, draw })
+    }
+
+    fn plan(&self, scene: &Arc<Scene>, request: &FrameRequest) -> Result<Plan, PlanError> {
+        let elide = request.elide.clone().unwrap_or_else(|| self.elide.clone());
+        Plan::new(scene, &FrameRequest { elide: Some(elide), ..request.clone() }, &self.limits)
+    }
+
+    fn work<'a>(&'a self, cancel: &'a AtomicBool) -> Work<'a> {
+        Work { pool: &self.pool, cancel, level: self.level }
+    }
+
+    fn render(
+        &self,
+        scene: &Arc<Scene>,
+        request: &FrameRequest,
+        format: Format,
+        cancel: &AtomicBool,
+    ) -> Result<Rendered, JobError> {
+        let started = Instant::now();
+        let plan = self.plan(scene, request)?;
+        let planned = started.elapsed();
+        let picture = (self.draw)(&plan, format, &self.work(cancel))?;
+        Ok(Rendered::new(picture, plan.etag(), format, planned, started.elapsed()))
+    }
+
+    fn pick(
+        &self,
+        scene: &Arc<Scene>,
+        request: &FrameRequest,
+        x: u32,
+        y: u32,
+        cancel: &AtomicBool,
+    ) -> Result<Option<Hit>, JobError> {
+        // A pixel is asked at its centre, whatever the picture's samples are.
+        let request = FrameRequest { output: Output::Instance, ..request.clone() };
+        let plan = self.plan(scene, &request)?;
+        let faults = outside("x", x, plan.view.width).into_iter().chain(outside("y", y, plan.view.height));
+        let faults: Vec<QueryFault> = faults.collect();
+        if faults.is_empty() {
+            Ok(crate::pipeline::pick(&plan, x, y, &self.work(cancel))?)
+        } else {
+            Err(JobError::Plan(PlanError::Query(faults)))
+        }
+    }
+}
+
+/// The fault of a pixel coordinate that the picture does not have.
+fn outside(parameter: &str, value: u32, side: u32) -> Option<QueryFault> {
+    (value >= side).then(|| {
+        QueryFault::new(parameter, format!("must lie in [0, {}], is {value}", side.saturating_sub(1)))
+    })
+}
+
+/// `task`'s answer; its panic becomes an error. Nothing of a job outlives it but counters and
+/// permits, so there is no state that a panic could leave broken.
+fn caught<T>(task: impl FnOnce() -> Result<T, JobError>) -> Result<T, JobError> {
+    catch_unwind(AssertUnwindSafe(task)).unwrap_or_else(|_| {
+        tracing::error!("a job panicked");
+        Err(JobError::Panicked)
+    })
+}
+
+impl std::fmt::Debug for Engine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Engine").field("pool", &self.pool).field("level", &self.level).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+use super::*;
+use crate::scene::{ModelOptions, NewScene, UpAxis};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread::sleep;
+
+const TICK: Duration = Duration::from_millis(5);
+const PATIENCE: Duration = Duration::from_secs(10);
+
+fn scene() -> Arc<Scene> {
+    let new = NewScene {
+        document: Some(serde_json::json!({})),
+        files: None,
+        options: ModelOptions { up: UpAxis::Y, floor: false },
+    };
+    Arc::new(new.compile(&Limits::default()).expect("an empty document is a scene"))
+}
+
+/// Two slots' worth of settings in one: one frame runs, `queue` wait.
+fn settings(queue: u16, deadline: Duration) -> Settings {
+    let machine = Machine { threads: Some(std::num::NonZeroUsize::MIN), ..Machine::default() };
+    Settings {
+        renders: std::num::NonZeroUsize::MIN,
+        queue,
+        frame_seconds: deadline,
+        machine,
+        ..Settings::default()
+    }
+}
+
+fn renderer(settings: &Settings, draw: Box<Draw>) -> Renderer {
+    Renderer::with_draw(settings, draw).expect("a pool")
+}
+
+/// Draws until it is cancelled and says so.
+fn endless(ended: mpsc::Sender<()>) -> Box<Draw> {
+    let ended = std::sync::Mutex::new(ended);
+    Box::new(move |_, _, work| {
+        while !work.cancel.load(Ordering::Relaxed) {
+            sleep(TICK);
+        }
+        ended.lock().expect("one sender at a time").send(()).expect("a listening test");
+        Err(crate::pipeline::Cancelled)
+    })
+}
+
+async fn ask(renderer: &Renderer) -> Result<Rendered, JobError> {
+    renderer.render(scene(), FrameRequest::default(), Format::Png).await
+}
+
+async fn until(condition: impl Fn() -> bool) {
+    let end = Instant::now() + PATIENCE;
+    while !condition() {
+        assert!(Instant::now() < end, "waited in vain");
+        tokio::time::sleep(TICK).await;
+    }
+}
+
+#[tokio::test]
+async fn a_deadline_cancels_the_job() {
+    let (ended, end) = mpsc::channel();
+    let renderer = renderer(&settings(0, Duration::from_millis(30)), endless(ended));
+    assert!(matches!(ask(&renderer).await, Err(JobError::Deadline(_))));
+    end.recv_timeout(PATIENCE).expect("the job was cancelled");
+}
+
+#[tokio::test]
+async fn a_caller_that_leaves_cancels_its_job_and_frees_the_slot() {
+    let (ended, end) = mpsc::channel();
+    let renderer = renderer(&settings(0, PATIENCE), endless(ended));
+    let caller = tokio::spawn({
+        let renderer = renderer.clone();
+        async move { ask(&renderer).await.map(|_| ()) }
+    });
+    until(|| renderer.queue().depth().running == 1).await;
+    caller.abort();
+    tokio::task::spawn_blocking(move || end.recv_timeout(PATIENCE))
+        .await
+        .expect("no panic")
+        .expect("cancelled");
+    until(|| renderer.queue().depth() == QueueDepth { running: 0, waiting: 0 }).await;
+}
+
+#[tokio::test]
+async fn one_more_than_the_queue_holds_is_refused_at_once() {
+    let (ended, _end) = mpsc::channel();
+    let renderer = renderer(&settings(1, PATIENCE), endless(ended));
+    let callers: Vec<_> = (0..2)
+        .map(|_| {
+            let renderer = renderer.clone();
+            tokio::spawn(async move { ask(&renderer).await.map(|_| ()) })
+        })
+        .collect();
+    until(|| renderer.queue().depth() == QueueDepth { running: 1, waiting: 1 }).await;
+    assert!(matches!(ask(&renderer).await, Err(JobError::Full(1))));
+    callers.iter().for_each(tokio::task::JoinHandle::abort);
+}
+
+#[tokio::test]
+async fn a_closed_queue_refuses_but_finishes_what_it_has() {
+    let (go, gate) = mpsc::channel::<()>();
+    let gate = std::sync::Mutex::new(gate);
+    let draw: Box<Draw> = Box::new(move |_, _, _| {
+        gate.lock().expect("one job at a time").recv_timeout(PATIENCE).expect("let go");
+        Ok(Picture::default())
+    });
+    let renderer = renderer(&settings(1, PATIENCE), draw);
+    let callers: Vec<_> = (0..2)
+        .map(|_| {
+            let renderer = renderer.clone();
+            tokio::spawn(async move { ask(&renderer).await.map(|_| ()) })
+        })
+        .collect();
+    until(|| renderer.queue().depth() == QueueDepth { running: 1, waiting: 1 }).await;
+    renderer.queue().close();
+    assert!(matches!(ask(&renderer).await, Err(JobError::Closing)));
+    go.send(()).expect("a waiting job");
+    go.send(()).expect("a waiting job");
+    for caller in callers {
+        caller.await.expect("no panic").expect("finished");
+    }
+}
+
+#[tokio::test]
+async fn a_panic_is_an_error_and_the_next_frame_is_drawn() {
+    let calls = AtomicUsize::new(0);
+    let draw: Box<Draw> = Box::new(move |_, _, work| {
+        assert!(calls.fetch_add(1, Ordering::Relaxed) > 0, "the first frame panics");
+        Ok(work.pool.install(Picture::default))
+    });
+    let renderer = renderer(&settings(0, PATIENCE), draw);
+    assert!(matches!(ask(&renderer).await, Err(JobError::Panicked)));
+    let rendered = ask(&renderer).await.expect("a picture");
+    assert!(rendered.timing("queue").is_some() && rendered.timing("total").is_some());
+}
+
+#[tokio::test]
+async fn a_panic_on_the_pool_is_an_error_too() {
+    let draw: Box<Draw> = Box::new(|_, _, work| work.pool.install(|| panic!("on the pool")));
+    let renderer = renderer(&settings(0, PATIENCE), draw);
+    assert!(matches!(ask(&renderer).await, Err(JobError::Panicked)));
+}
+
+#[tokio::test]
+async fn the_etag_needs_no_turn() {
+    let (ended, _end) = mpsc::channel();
+    let renderer = renderer(&settings(0, PATIENCE), endless(ended));
+    let caller = tokio::spawn({
+        let renderer = renderer.clone();
+        async move { ask(&renderer).await.map(|_| ()) }
+    });
+    until(|| renderer.queue().depth().running == 1).await;
+    assert!(renderer.etag(scene(), FrameRequest::default()).await.expect("an ETag").starts_with('"'));
+    caller.abort();
+}
