@@ -1,0 +1,131 @@
+//! `/scenes/{id}/frame.png`: the picture.
+
+use super::observe::FrameNote;
+use super::problem::Problem;
+use super::query::Pairs;
+use super::{App, accept, blocking, body, etag, openapi};
+use crate::jobs::{Format, Rendered};
+use crate::plan::FrameRequest;
+use crate::scene::Scene;
+use axum::extract::{Path, Request, State};
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode};
+use axum::response::{IntoResponse, Response};
+use std::fmt::Display;
+use std::sync::Arc;
+
+const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
+const RENDER_STATS: HeaderName = HeaderName::from_static("render-stats");
+const RENDER_DEPTH_RANGE: HeaderName = HeaderName::from_static("render-depth-range");
+
+/// Caches may keep a frame, but ask each time whether it still holds.
+const NO_CACHE: (HeaderName, HeaderValue) = (CACHE_CONTROL, HeaderValue::from_static("no-cache"));
+
+/// Draw a frame
+#[utoipa::path(
+    get, path = "/scenes/{id}/frame.png", tag = "frames",
+    params(("id" = String, Path, description = "The scene"), openapi::FrameQuery),
+    responses(
+        (status = 200, description = "The picture", body = Vec<u8>, content_type = "image/png", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 304, description = "If-None-Match names it; nothing was drawn"),
+    ),
+)]
+pub(super) async fn get_png(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    pairs: Pairs,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let format = Format::Png;
+    accept::check(&headers, format.content_type())?;
+    let request = pairs.frame()?;
+    let scene = app.entry(&id)?.scene;
+    draw(&app, &id, scene, request, format, &headers).await
+}
+
+/// Draw a frame of a changed scene
+///
+/// The body is a JSON merge patch that holds for this frame alone.
+#[utoipa::path(
+    post, path = "/scenes/{id}/frame.png", tag = "frames",
+    params(("id" = String, Path, description = "The scene"), openapi::FrameQuery),
+    request_body(content((serde_json::Value = "application/merge-patch+json"), (serde_json::Value = "application/json"))),
+    responses(
+        (status = 200, description = "The picture", body = Vec<u8>, content_type = "image/png", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 304, description = "If-None-Match names it; nothing was drawn"),
+    ),
+)]
+pub(super) async fn post_png(
+    State(app): State<App>,
+    Path(id): Path<String>,
+    pairs: Pairs,
+    request: Request,
+) -> Result<Response, Problem> {
+    let format = Format::Png;
+    accept::check(request.headers(), format.content_type())?;
+    let frame = pairs.frame()?;
+    let entry = app.entry(&id)?;
+    let headers = request.headers().clone();
+    let patch = body::patch(request, app.body_bounds()).await?;
+    let limits = *app.renderer.limits();
+    let scene = blocking::compile(move || entry.patched(&patch, &limits)).await?;
+    draw(&app, &id, scene, frame, format, &headers).await
+}
+
+/// A picture format of the contract that this version does not write.
+pub(super) async fn not_yet() -> Problem {
+    Problem::new(StatusCode::NOT_ACCEPTABLE, "this version writes pictures as .png alone")
+}
+
+/// Draws and replies, or says that the client has the picture already; `name` is the scene's, for the
+/// log.
+pub(super) async fn draw(
+    app: &App,
+    name: &str,
+    scene: Arc<Scene>,
+    request: FrameRequest,
+    format: Format,
+    headers: &HeaderMap,
+) -> Result<Response, Problem> {
+    if etag::is_conditional(headers) {
+        let tag = app.renderer.etag(Arc::clone(&scene), request.clone()).await?;
+        if etag::none_match_names(headers, &tag) {
+            return Ok((StatusCode::NOT_MODIFIED, [NO_CACHE], [(ETAG, tag)]).into_response());
+        }
+    }
+    Ok(reply(name, app.renderer.render(scene, request, format).await?))
+}
+
+fn reply(name: &str, rendered: Rendered) -> Response {
+    let time = |pass| rendered.timing(pass).unwrap_or_default();
+    let note = FrameNote {
+        scene: name.to_owned(),
+        width: rendered.width,
+        height: rendered.height,
+        queue_ms: time("queue"),
+        render_ms: time("total") - time("queue") - time("encode"),
+        encode_ms: time("encode"),
+    };
+    let timings = rendered.timings.iter().map(|(pass, ms)| format!("{pass};dur={ms:.3}"));
+    let stats = rendered.stats.iter().map(|(name, count)| format!("{name}={count}"));
+    let fixed = [(CONTENT_TYPE, HeaderValue::from_static(rendered.content_type)), NO_CACHE];
+    let made = [
+        (ETAG, rendered.etag.clone()),
+        (SERVER_TIMING, listed(timings)),
+        // A dictionary of integers (RFC 8941, section 3.2).
+        (RENDER_STATS, listed(stats)),
+    ];
+    let range = rendered.depth_range.map(|[near, far]| [(RENDER_DEPTH_RANGE, listed([near, far]))]);
+    let mut response = (fixed, made, rendered.bytes).into_response();
+    if let Some([(name, value)]) = range
+        && let Ok(value) = HeaderValue::from_str(&value)
+    {
+        response.headers_mut().insert(name, value);
+    }
+    response.extensions_mut().insert(note);
+    response
+}
+
+fn listed(items: impl IntoIterator<Item = impl Display>) -> String {
+    items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")
+}

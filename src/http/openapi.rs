@@ -1,0 +1,216 @@
+//! `/openapi.json`: OpenAPI 3.1 from the handlers' own annotations.
+
+mod schemas;
+
+use super::App;
+use super::query::NoQuery;
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+use axum::routing::{MethodRouter, get};
+use serde_json::{Value, json};
+use std::sync::Arc;
+use utoipa::openapi::{InfoBuilder, OpenApi, OpenApiBuilder};
+use utoipa::{IntoParams, ToSchema};
+
+/// The frame query.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(dead_code, reason = "names and types for the description; `FrameRequest::read` does the reading")]
+pub(super) struct FrameQuery {
+    /// Pixels in a row
+    #[param(minimum = 1)]
+    width: Option<u32>,
+    /// Rows
+    #[param(minimum = 1)]
+    height: Option<u32>,
+    /// Samples a pixel: 1, 2, 4, 8 or 16
+    samples: Option<u8>,
+    /// Seconds
+    t: Option<f64>,
+    /// JPEG quality
+    #[param(minimum = 1, maximum = 100)]
+    quality: Option<u8>,
+    /// `color`, `depth`, `normal`, `albedo` or `instance`
+    output: Option<String>,
+    /// `blinn_phong`, `lambert`, `unlit`, `vertex_color` or `normal`, in place of every material's
+    shading: Option<String>,
+    /// Where the camera stands: `x,y,z`
+    eye: Option<String>,
+    /// What it looks at: `x,y,z`
+    target: Option<String>,
+    /// Vertical field of view in degrees
+    #[param(minimum = 0.001, maximum = 179.9)]
+    fov: Option<f64>,
+    /// Nearest distance drawn
+    near: Option<f64>,
+    /// Farthest distance drawn
+    far: Option<f64>,
+    /// Orthographic, with this full height of the view
+    ortho: Option<f64>,
+    /// About the target: `yaw,pitch` in degrees, and `,distance`
+    orbit: Option<String>,
+    /// `transparent`, `rrggbb`, or a name of the document's `backgrounds`
+    background: Option<String>,
+    /// What may be left out where the picture stays the same: `all` or `none`
+    elide: Option<String>,
+}
+
+/// How a model becomes a scene.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(dead_code, reason = "names and types for the description; `model_options` does the reading")]
+pub(super) struct ModelQuery {
+    /// Which of the model's axes is up: `y` or `z`
+    up: Option<String>,
+    /// Whether to put a floor under it
+    floor: Option<bool>,
+}
+
+/// Holds a change to the scene's state that the client knows.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "names and types for the description; `etag::precondition` does the reading")]
+pub(super) struct IfMatch {
+    /// ETags of the scene, or `*`
+    #[param(rename = "If-Match")]
+    if_match: Option<String>,
+    /// ETags of what is changed, or `*`: only if it is not there
+    #[param(rename = "If-None-Match")]
+    if_none_match: Option<String>,
+}
+
+/// What a scene holds, in short.
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "names and types for the description; the scene writes it")]
+pub(super) struct Summary {
+    id: String,
+    name: Option<String>,
+    revision: u64,
+    /// `instances`, `meshes`, `triangles`, `vertices`, `materials`, `textures`, `lights`
+    counts: Value,
+    bytes: u64,
+    /// `min` and `max` over the visible instances
+    bounds: Option<Value>,
+    /// The same over those that automatic framing looks at: instances with `framed`, true by default
+    framed_bounds: Option<Value>,
+    /// `file`, `line`, `detail`
+    warnings: Vec<Value>,
+    /// `self`, `frame`, …
+    links: Value,
+}
+
+/// A file that came with a scene.
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "names and types for the description")]
+pub(super) struct FileEntry {
+    name: String,
+    bytes: u64,
+}
+
+/// What there is before any route: the title.
+pub(super) fn head() -> OpenApi {
+    let info = InfoBuilder::new()
+        .title("rasterd")
+        .version(env!("CARGO_PKG_VERSION"))
+        .description(Some(env!("CARGO_PKG_DESCRIPTION")));
+    OpenApiBuilder::new().info(info).build()
+}
+
+/// The route that serves the description of `api`, this route and the errors included.
+pub(super) fn route(api: OpenApi) -> MethodRouter<App> {
+    let text: Arc<str> = described(api).to_string().into();
+    get(move |_: NoQuery| async move { reply(&text) })
+}
+
+fn reply(text: &Arc<str>) -> Response {
+    ([(CONTENT_TYPE, "application/json")], text.to_string()).into_response()
+}
+
+fn described(api: OpenApi) -> Value {
+    let mut api = json!(api);
+    api["paths"]["/openapi.json"] = json!({ "get": {
+        "tags": ["service"],
+        "summary": "This description",
+        "responses": { "200": { "description": "OpenAPI 3.1", "content": { "application/json": { "schema": {} } } } },
+    } });
+    api["components"]["schemas"]["Problem"] = problem_schema();
+    let paths = api["paths"].as_object_mut().into_iter().flatten();
+    for (path, item) in paths {
+        for (method, operation) in item.as_object_mut().into_iter().flatten() {
+            operation["operationId"] = json!(operation_id(path, method));
+            schemas::narrow(operation);
+            add_errors(path, method, operation);
+        }
+    }
+    api
+}
+
+/// `get_scenes_id_frame_png`: the handlers' own names repeat from noun to noun.
+fn operation_id(path: &str, method: &str) -> String {
+    let words = path.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    std::iter::once(method).chain(words).collect::<Vec<_>>().join("_")
+}
+
+/// Every status that the call's shape lets it answer, beside those it names itself.
+fn add_errors(path: &str, method: &str, operation: &mut Value) {
+    let has_body = operation.get("requestBody").is_some();
+    let draws = path.ends_with(".png") || path.ends_with("/pick");
+    let sends_picture = path.ends_with(".png");
+    let changes = method != "get";
+    let conditional = changes && path.contains("{id}") && !draws;
+    let of = |applies: bool, statuses: &'static [u16]| if applies { statuses } else { &[] };
+    let statuses = [
+        of(true, &[403, 422, 431, 500]),
+        of(path.contains("{id}"), &[400, 404]),
+        of(has_body, &[400, 408, 413, 415, 422]),
+        of(has_body && !draws, &[507]),
+        of(conditional, &[412]),
+        of(sends_picture, &[406]),
+        of(draws, &[413, 503, 504]),
+        of(path == "/readyz", &[503]),
+    ];
+    for status in statuses.into_iter().flatten() {
+        operation["responses"][status.to_string()] = problem_response(*status);
+    }
+}
+
+fn problem_response(status: u16) -> Value {
+    let status = axum::http::StatusCode::from_u16(status).ok();
+    let description = status.and_then(|status| status.canonical_reason()).unwrap_or("Error");
+    let schema = json!({ "$ref": "#/components/schemas/Problem" });
+    json!({ "description": description, "content": { "application/problem+json": { "schema": schema } } })
+}
+
+/// RFC 9457, with what this service adds.
+fn problem_schema() -> Value {
+    let text = json!({ "type": "string" });
+    json!({
+        "type": "object",
+        "required": ["type", "title", "status", "detail", "request_id"],
+        "properties": {
+            "type": text, "title": text, "status": { "type": "integer" }, "detail": text, "request_id": text,
+            "errors": { "type": "array", "items": {
+                "type": "object",
+                "required": ["detail"],
+                "properties": { "pointer": text, "parameter": text, "detail": text },
+            } },
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::FrameRequest;
+    use crate::plan::request::Query;
+
+    #[test]
+    fn the_frame_query_is_described_name_by_name() {
+        let described: Vec<String> =
+            FrameQuery::into_params(|| None).into_iter().map(|param| param.name).collect();
+        let mut query = Query::new([]);
+        FrameRequest::read(&mut query);
+        let served = query.known().iter().filter(|name| !FrameRequest::NOT_YET.contains(name));
+        assert!(described.iter().eq(served), "{described:?}");
+    }
+}

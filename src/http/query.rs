@@ -1,0 +1,57 @@
+//! The query string of a call, as pairs; each handler says which names it knows.
+
+use super::problem::Problem;
+use crate::plan::FrameRequest;
+use crate::plan::request::Query;
+use crate::scene::{ModelOptions, UpAxis};
+use axum::extract::FromRequestParts;
+use axum::http::request::Parts;
+
+/// The decoded pairs of the query string.
+#[derive(Debug)]
+pub(super) struct Pairs(Vec<(String, String)>);
+
+impl Pairs {
+    /// Reads what `read` knows; anything else, and all that is wrong with it, is a 422.
+    pub(super) fn read<T>(&self, read: impl FnOnce(&mut Query) -> T) -> Result<T, Problem> {
+        let mut query = Query::new(self.0.iter().map(|(name, value)| (name.as_str(), value.as_str())));
+        let value = read(&mut query);
+        query.finish().map_err(|faults| Problem::query(&faults))?;
+        Ok(value)
+    }
+
+    /// The frame query and nothing else.
+    pub(super) fn frame(&self) -> Result<FrameRequest, Problem> {
+        self.read(FrameRequest::read)
+    }
+}
+
+impl<S: Sync> FromRequestParts<S> for Pairs {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+        axum::extract::Query::try_from_uri(&parts.uri)
+            .map(|axum::extract::Query(pairs)| Self(pairs))
+            .map_err(|_| Problem::bad_request("the query string does not decode"))
+    }
+}
+
+/// Refuses any query: what a call without parameters takes in [`Pairs`]' place.
+#[derive(Debug)]
+pub(super) struct NoQuery;
+
+impl<S: Sync> FromRequestParts<S> for NoQuery {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        Pairs::from_request_parts(parts, state).await?.read(|_| Self)
+    }
+}
+
+/// `up=y|z` and `floor=true|false`.
+pub(super) fn model_options(query: &mut Query) -> ModelOptions {
+    ModelOptions {
+        up: query.one_of("up", &[("y", UpAxis::Y), ("z", UpAxis::Z)]).unwrap_or(UpAxis::Y),
+        floor: query.flag("floor").unwrap_or(true),
+    }
+}
