@@ -1,0 +1,111 @@
+//! The command line.
+
+use crate::client::{Client, TRIANGLE_OBJ, png_size, triangle};
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+/// A folder that is gone after the test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str, files: &[(&str, &str)]) -> Self {
+        let path = std::env::temp_dir().join(format!("rasterd-command-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a folder");
+        for (file, text) in files {
+            std::fs::write(path.join(file), text).expect("a file");
+        }
+        Self(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn rasterd() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_rasterd"))
+}
+
+fn render(folder: &Folder, arguments: &[&str]) -> Output {
+    rasterd().arg("render").args(arguments).current_dir(&folder.0).output().expect("a run")
+}
+
+fn error(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[tokio::test]
+async fn render_writes_the_bytes_that_the_server_sends() {
+    let folder = Folder::new("same", &[("scene.json", &triangle().to_string()), ("m.obj", TRIANGLE_OBJ)]);
+    let client = Client::new();
+    client.put_triangle().await;
+
+    let output = render(&folder, &["scene.json", "-o", "-", "--orbit", "-30,20", "--samples", "4"]);
+    assert!(output.status.success(), "{}", error(&output));
+    assert_eq!(output.stdout, client.get("/scenes/t/frame.png?orbit=-30,20&samples=4").await.body);
+
+    let output = render(&folder, &["m.obj", "-o", "out.png", "--width=20", "--height=10", "--threads", "1"]);
+    assert!(output.status.success(), "{}", error(&output));
+    let written = std::fs::read(folder.0.join("out.png")).expect("a picture");
+    assert_eq!(png_size(&written), (20, 10));
+}
+
+#[test]
+fn bad_input_exits_1_with_the_servers_words() {
+    let folder = Folder::new("bad", &[("broken.json", "{"), ("wrong.json", "{\"lamps\": {}, \"cam\": {}}")]);
+    let run = |arguments: &[&str]| {
+        let output = render(&folder, arguments);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        error(&output)
+    };
+    assert!(run(&["broken.json", "-o", "-"]).contains("not JSON: EOF while parsing"));
+    assert!(run(&["wrong.json", "-o", "-"]).contains("/lamps: "));
+    assert!(run(&["none.obj", "-o", "-"]).contains("none.obj"));
+    assert!(run(&["wrong.json", "-o", "-", "--width", "0"]).contains("width: must lie in"));
+    assert!(run(&["wrong.json", "-o", "x.jpg"]).contains(".png"));
+}
+
+#[test]
+fn two_models_of_one_name_are_refused() {
+    let folder = Folder::new("twice", &[("a.obj", TRIANGLE_OBJ)]);
+    std::fs::create_dir_all(folder.0.join("d")).expect("a folder");
+    std::fs::write(folder.0.join("d/a.obj"), TRIANGLE_OBJ).expect("a file");
+    let output = render(&folder, &["a.obj", "d/a.obj", "-o", "-"]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = error(&output);
+    assert!(error.contains("two files are named \"a.obj\": a.obj and d/a.obj"), "{error}");
+}
+
+#[test]
+fn wrong_usage_exits_2() {
+    for arguments in [
+        &["render"][..],
+        &["--listen", "nowhere"],
+        &["paint"],
+        &["render", "a.obj", "-o", "-", "--simd", "mmx"],
+        &["render", "a.obj", "-o", "-", "--elide", "shadow"],
+    ] {
+        let output = rasterd().args(arguments).output().expect("a run");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", error(&output));
+    }
+}
+
+#[test]
+fn a_server_is_healthy_until_it_is_told_to_stop() {
+    let mut server =
+        rasterd().args(["--listen", "127.0.0.1:0"]).stderr(Stdio::piped()).spawn().expect("a server");
+    let mut lines = BufReader::new(server.stderr.take().expect("its log")).lines();
+    let address = lines
+        .find_map(|line| Some(line.ok()?.split_once("address=")?.1.trim().to_owned()))
+        .expect("an address");
+
+    let check = || rasterd().args(["healthcheck", "--listen", &address]).status().expect("a run").code();
+    assert_eq!(check(), Some(0));
+    let stopped = Command::new("kill").args(["-TERM", &server.id().to_string()]).status().expect("a run");
+    assert!(stopped.success());
+    assert_eq!(server.wait().expect("an end").code(), Some(0));
+    assert_eq!(check(), Some(1));
+}

@@ -1,0 +1,21 @@
+//! Public behaviour.
+
+mod box_on_floor;
+mod client;
+mod closed_form;
+mod command;
+mod draw;
+mod errors;
+mod files;
+mod frames;
+mod guard;
+mod measure;
+mod numerics;
+mod pick;
+mod pictures;
+mod random;
+mod render_once;
+mod scenes;
+mod service;
+mod socket;
+mod unchanged;

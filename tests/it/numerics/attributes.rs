@@ -1,0 +1,92 @@
+//! Texture coordinates and their derivatives at every ratio of distances.
+
+use super::interpolated::{U, corners, document, look, weights};
+use crate::draw::{plan, scene};
+use crate::measure::at_most;
+use crate::random::Random;
+use rasterd::pipeline::geometry::setup::NOT_CLIPPED;
+use rasterd::plan::FrameRequest;
+use serde_json::json;
+
+/// B21.
+#[test]
+fn texture_coordinates_stay_within_sixteen_roundings_at_any_ratio_of_distances() {
+    for ratio in [1.0, 1e2, 1e4, 1e6] {
+        for extent in [30.0, 1000.0, 15_000.0] {
+            let mut random = Random(0xb21);
+            let triangles: Vec<_> = (0..400).map(|_| corners(&mut random, ratio, extent)).collect();
+            let positions = triangles.as_flattened();
+            let uvs: Vec<_> =
+                positions.iter().map(|_| [random.between(0.0, 1.0), random.between(0.0, 1.0)]).collect();
+            let plan = plan(&scene(&document(positions, json!({ "uvs": uvs }))), &FrameRequest::default());
+            let (mut worst, mut outside) = (0.0f64, 0.0f64);
+            let looked = look(&plan, &mut random, |t, point, lane, varyings| {
+                assert_eq!(t.clipped, NOT_CLIPPED);
+                let corner = t.corners().map(|c| 3 * t.source as usize + c);
+                let e = weights(t, point);
+                let share = [0, 1, 2].map(|i| e[i] as f64 / -positions[corner[i]].z);
+                for (axis, value) in varyings.uv.iter().enumerate() {
+                    let value = f64::from(value[lane]);
+                    let at = corner.map(|c| uvs[c][axis]);
+                    let exact = (0..3).map(|i| share[i] * at[i]).sum::<f64>() / share.iter().sum::<f64>();
+                    let largest = at.into_iter().fold(0.0, f64::max);
+                    let least = at.into_iter().fold(1.0, f64::min);
+                    worst = worst.max((value - exact).abs() / largest / U);
+                    outside = outside.max((value - largest).max(least - value) / largest / U);
+                }
+            });
+            assert!(looked > 500, "{looked} points");
+            let case = format!("B21 w ratio {ratio:e}, {extent} px, {looked} points");
+            at_most(&case, "error of u in u·max|u|", worst, 16.0);
+            // B12: an interpolated value stays between those of its corners.
+            at_most(&case, "excess over the corners in u·max|u|", outside.max(0.0), 4.0);
+        }
+    }
+}
+
+/// B24: the level of detail comes from these.
+#[test]
+fn derivatives_of_texture_coordinates_give_the_level_to_a_256th() {
+    for ratio in [1.0, 1e2, 1e4, 1e6] {
+        for (extent, turns) in [(30.0, 1.0), (1000.0, 1.0), (15_000.0, 1.0), (1000.0, 1e5)] {
+            let mut random = Random(0xb24);
+            let triangles: Vec<_> = (0..400).map(|_| corners(&mut random, ratio, extent)).collect();
+            let positions = triangles.as_flattened();
+            let uvs: Vec<_> =
+                positions.iter().map(|_| [random.between(0.0, turns), random.between(0.0, turns)]).collect();
+            let plan = plan(&scene(&document(positions, json!({ "uvs": uvs }))), &FrameRequest::default());
+            let mut worst = 0.0f64;
+            let looked = look(&plan, &mut random, |t, point, lane, varyings| {
+                let corner = t.corners().map(|c| 3 * t.source as usize + c);
+                let e = weights(t, point);
+                // U = Σ Eᵢ uᵢ / wᵢ and D = Σ Eᵢ / wᵢ; ∂(U/D) = (∂U − (U/D) ∂D) / D, in units per pixel.
+                let step = |axis: usize| {
+                    let mut next = point;
+                    next[axis] += 1;
+                    let there = weights(t, next);
+                    [0, 1, 2].map(|i| (there[i] - e[i]) as f64 * 256.0)
+                };
+                let per_w = corner.map(|c| 1.0 / -positions[c].z);
+                let sum =
+                    |e: [f64; 3], value: [f64; 3]| (0..3).map(|i| e[i] * per_w[i] * value[i]).sum::<f64>();
+                let here = e.map(|e| e as f64);
+                let d = sum(here, [1.0; 3]);
+                let squared = |axis: usize| {
+                    let de = step(axis);
+                    let along = [0, 1].map(|c| {
+                        // From one of the corners, so that whole turns do not cancel.
+                        let value = corner.map(|at| uvs[at][c] - uvs[corner[0]][c]);
+                        (sum(de, value) - sum(here, value) / d * sum(de, [1.0; 3])) / d
+                    });
+                    let drawn = [0, 1].map(|c| f64::from(varyings.uv_per_pixel[2 * axis + c][lane]));
+                    let length = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
+                    [length(along), length(drawn)]
+                };
+                let ([x, drawn_x], [y, drawn_y]) = (squared(0), squared(1));
+                worst = worst.max((drawn_x.max(drawn_y) / x.max(y)).log2().abs() / 2.0);
+            });
+            let case = format!("B24 w ratio {ratio:e}, {extent} px, {turns:e} turns, {looked} points");
+            at_most(&case, "error of the level", worst, 1.0 / 256.0);
+        }
+    }
+}

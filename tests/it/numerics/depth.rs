@@ -1,0 +1,175 @@
+//! Depth: near and far surfaces in order, and exact over a triangle however far its corners lie apart
+//! (B13, B14).
+
+use super::stage::*;
+use crate::measure::{U, at_most};
+use crate::random::Random;
+use glam::DVec3;
+use rasterd::math::View;
+use rasterd::pipeline::geometry::setup::Triangle;
+
+/// Depth of a set-up triangle at a point in sub-pixels: exact integer weights, and a sum of terms
+/// that are all positive.
+fn exact_depth(t: &Triangle, depth: [f64; 3], p: [i32; 2]) -> f64 {
+    let corner = |i: usize| [t.x[i % 3], t.y[i % 3]].map(i128::from);
+    let p = p.map(i128::from);
+    let side = |i: usize| {
+        let (a, b) = (corner(i), corner(i + 1));
+        (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+    };
+    // Corner i lies opposite to the edge from corner i + 1.
+    let weights = [side(1), side(2), side(0)];
+    let area: i128 = weights.iter().sum();
+    (0..3).map(|i| weights[i] as f64 * depth[i]).sum::<f64>() / area as f64
+}
+
+/// The largest relative error of the depth of any sample of a triangle, and how many it has.
+fn worst_error(view: &View, screen: [[f64; 2]; 3], w: [f64; 3]) -> (f64, usize) {
+    let corners = [0, 1, 2].map(|i| at_distance(view, screen[i], w[i]));
+    let bins = bins(two_sided(soup(&[corners])), view, 1);
+    assert_eq!(bins.counts.clipped, 0);
+    let Some(t) = triangles(&bins).next() else {
+        return (0.0, 0);
+    };
+    // The distances after the way through the vertex stage are those of the corners: the camera's
+    // axes are those of the world.
+    let depth = t.corners().map(|corner| view.near / w[corner]);
+    let seen = visible(&bins, 1);
+    let (mut worst, mut covered) = (0.0f64, 0);
+    for (i, (&id, &drawn)) in seen.id.iter().zip(&seen.depth).enumerate() {
+        if id != 0 {
+            let (x, y) = (i as u32 % view.width, i as u32 / view.width);
+            let p =
+                [(x, view.width), (y, view.height)].map(|(c, n)| (c * 256 + 128) as i32 - (n * 128) as i32);
+            let exact = exact_depth(t, depth, p);
+            worst = worst.max((f64::from(drawn) - exact).abs() / exact);
+            covered += 1;
+        }
+    }
+    (worst, covered)
+}
+
+fn claim(case: &str, seed: u64, mut make: impl FnMut(&mut Random, &View) -> ([[f64; 2]; 3], [f64; 3])) {
+    let mut rng = Random::new(case, seed);
+    let (mut worst, mut covered) = (0.0f64, 0);
+    for _ in 0..300 {
+        let view = perspective_view(128, 96, 0.5, 0.25);
+        let (screen, w) = make(&mut rng, &view);
+        let (error, count) = worst_error(&view, screen, w);
+        worst = worst.max(error);
+        covered += count;
+    }
+    assert!(covered > 2000, "{covered} samples are too few to show anything");
+    at_most(case, "relative error of the depth in u", worst / U, 8.0);
+}
+
+fn anywhere(rng: &mut Random, reach: f64) -> [f64; 2] {
+    [0; 2].map(|_| rng.between(-reach, reach) * 256.0)
+}
+
+#[test]
+fn b14_a_triangle_to_1e9_near_distances_keeps_its_depth() {
+    claim("B14", 20, |rng, view| {
+        let screen = [0; 3].map(|_| anywhere(rng, 300.0));
+        (screen, [view.near, view.near * 1e9, view.near * rng.magnitude(1.0, 1e9)])
+    });
+    claim("B14 huge", 21, |rng, view| {
+        let screen = [0; 3].map(|_| anywhere(rng, 30_000.0));
+        (screen, [view.near, view.near * 1e9, view.near * rng.magnitude(1.0, 1e9)])
+    });
+}
+
+#[test]
+fn b14_any_ratio_of_distances_keeps_its_depth() {
+    claim("B14 any ratio", 22, |rng, view| {
+        let ratio = rng.magnitude(1.0 + 1e-7, 1e12);
+        let far = rng.magnitude(1.0, 1e12) * view.near;
+        let screen = [0; 3].map(|_| anywhere(rng, 3000.0));
+        (screen, [far, far * ratio, far * rng.magnitude(1.0, ratio)])
+    });
+}
+
+#[test]
+fn b14_a_sliver_keeps_its_depth() {
+    claim("B14 sliver", 23, |rng, view| {
+        // A few sub-pixels to a few pixels wide, and through the picture.
+        let (angle, reach) = (rng.between(0.0, 7.0), rng.between(100.0, 30_000.0) * 256.0);
+        let through = anywhere(rng, 40.0);
+        let (sin, cos) = angle.sin_cos();
+        let a = [through[0] - cos * reach, through[1] - sin * reach];
+        let b = [through[0] + cos * reach, through[1] + sin * reach];
+        let width = rng.magnitude(2.0, 2000.0);
+        let c = [b[0] + width * sin, b[1] - width * cos];
+        let ratio = rng.magnitude(1.0, 1e9);
+        let w = [1.0, ratio, rng.magnitude(1.0, ratio)].map(|w| w * view.near);
+        let turn = rng.below(3);
+        let mut screen = [a, b, c];
+        screen.rotate_left(turn);
+        (screen, w)
+    });
+}
+
+/// A long edge that runs exactly through pixel centres, all of it far away, and a near corner hardly
+/// beside it: next to the edge the depth is that of its ends, but a plane through the corners gets
+/// it as the difference of two numbers that are a billion times as large.
+#[test]
+fn b14_a_sliver_keeps_its_depth_on_its_own_edge() {
+    claim("B14 sliver edge", 24, |rng, view| {
+        let [p, q] = [rng.below(4) + 1, rng.below(4)].map(|n| n as f64);
+        // The edge is a left or top one, so it belongs to the triangle.
+        let middle = [0; 2].map(|_| (rng.between(-20.0, 20.0).floor() + 0.5) * 256.0);
+        let steps = rng.between(10.0, 5000.0).floor() * 256.0;
+        let a = [middle[0] - p * steps, middle[1] + q * steps];
+        let b = [middle[0] + p * steps, middle[1] - q * steps];
+        let width = rng.magnitude(2.0, 200.0).floor();
+        let c = if rng.below(2) == 0 { [b[0] + 3.0, b[1] + width] } else { [a[0] + 3.0, a[1] + width] };
+        let far = view.near * rng.magnitude(10.0, 16e6);
+        ([a, b, c], [far, far * rng.between(0.9, 1.1), view.near])
+    });
+}
+
+/// What is so far away that its depth rounds to 0 counts as beyond the far plane; one step nearer is
+/// drawn, denormal or not.
+#[test]
+fn b13_depth_zero_is_beyond_the_far_plane_and_the_least_depth_is_not() {
+    let view = perspective_view(8, 8, 1.0, 1.0);
+    let drawn = |w: f64| {
+        let wide = |x: f64, y: f64| DVec3::new(x * w, y * w, -w);
+        let triangle = [wide(-4.0, -4.0), wide(8.0, -4.0), wide(-4.0, 8.0)];
+        let seen = visible(&bins(two_sided(soup(&[triangle])), &view, 1), 1);
+        seen.id.iter().filter(|&&id| id != 0).count()
+    };
+    for exponent in [100, 126, 127, 140, 149] {
+        assert_eq!(drawn(2f64.powi(exponent)), 64, "2^{exponent}");
+    }
+    for exponent in [151, 160, 400] {
+        assert_eq!(drawn(2f64.powi(exponent)), 0, "2^{exponent}");
+    }
+}
+
+/// Parallel surfaces, level and tilted: the farther one is the nearer one scaled about the eye, so it
+/// covers the same samples and lies behind by the same factor everywhere.
+#[test]
+fn b13_the_nearer_of_two_surfaces_wins_down_to_a_gap_of_four_roundings() {
+    let mut rng = Random::new("B13", 25);
+    for (near, far) in [(0.1, 1e4), (1e-3, 1e6), (1e-6, 1e12)] {
+        let view = perspective_view(16, 16, 1.0, near);
+        for gap in [1e-3, 1e-5, 1e-6, 2f64.powi(-22)] {
+            let (mut wrong, mut covered) = (0, 0);
+            for i in 0..200 {
+                let w = rng.magnitude(near, far);
+                let tilt = if i % 2 == 0 { 1.0 } else { 3.0 };
+                let ws = [0; 3].map(|_| w * rng.between(1.0, tilt));
+                let screen = [0; 3].map(|_| anywhere(&mut rng, 40.0));
+                let at = |scale: f64| [0, 1, 2].map(|i| at_distance(&view, screen[i], ws[i] * scale));
+                // The farther one goes first, or a tie would go to the right one.
+                let seen = visible(&bins(two_sided(soup(&[at(1.0 + gap), at(1.0)])), &view, 1), 1);
+                wrong += seen.id.iter().filter(|&&id| id == 1).count();
+                covered += seen.id.iter().filter(|&&id| id == 2).count();
+            }
+            assert!(covered > 5000, "{covered} samples are too few to show anything");
+            let case = format!("B13 {near:e} to {far:e}, gap {gap:.1e}");
+            at_most(&case, "ties and swaps", wrong as f64, 0.0);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Interpolated attributes, straight from the stage that makes them.
+
+use crate::draw::work;
+use crate::random::Random;
+use fearless_simd::Level;
+use glam::{DVec2, DVec3};
+use rasterd::math::simd::dispatch;
+use rasterd::pipeline::geometry::bin::TileGrid;
+use rasterd::pipeline::geometry::setup::Triangle;
+use rasterd::pipeline::geometry::{self, Bins};
+use rasterd::pipeline::samples;
+use rasterd::pipeline::shade::Fragment;
+use rasterd::pipeline::shade::varyings::{Records, Source, Varyings, interpolate};
+use rasterd::plan::Plan;
+use serde_json::{Value, json};
+
+/// Unit roundoff of f32.
+pub const U: f64 = 5.960_464_477_539_063e-8;
+
+/// Points a triangle is looked at.
+const POINTS: usize = 8;
+
+/// Many triangles as one mesh; the picture is 256 × 256 px, its field of view 90°, so that x/w = 1
+/// is at 128 px.
+pub fn document(positions: &[DVec3], extra: Value) -> Value {
+    let positions: Vec<_> = positions.iter().map(|p| p.to_array()).collect();
+    let mut mesh = json!({ "type": "triangles", "positions": positions });
+    mesh.as_object_mut().expect("a mesh").extend(extra.as_object().cloned().unwrap_or_default());
+    json!({
+        "camera": { "position": [0, 0, 0], "target": [0, 0, -1], "fov_y_deg": 90, "near": 1e-3 },
+        "textures": { "t": { "checker": {} } },
+        "materials": { "m": { "diffuse_map": "t", "double_sided": true } },
+        "meshes": { "m": mesh },
+        "instances": { "i": { "mesh": "m", "material": "m" } },
+        "lights": {},
+        "render": { "width": 256, "height": 256, "samples": 1 },
+    })
+}
+
+/// The geometry of a plan.
+pub fn bins(plan: &Plan) -> Bins {
+    let grid = TileGrid::new(&plan.view, 6, samples::pattern(1));
+    geometry::run(&plan.items, &plan.view, grid, &work()).expect("nobody cancels")
+}
+
+/// The edge functions of the corners at p, exact.
+pub fn weights(t: &Triangle, p: [i32; 2]) -> [i128; 3] {
+    let edge = |i: usize, j: usize| {
+        let d = |a: i32, b: i32| i128::from(a) - i128::from(b);
+        d(t.x[j], t.x[i]) * d(p[1], t.y[i]) - d(t.y[j], t.y[i]) * d(p[0], t.x[i])
+    };
+    [edge(1, 2), edge(2, 0), edge(0, 1)]
+}
+
+/// A sub-pixel inside a triangle.
+#[expect(clippy::cast_possible_truncation, reason = "between coordinates of the triangle")]
+fn inside(t: &Triangle, random: &mut Random) -> Option<[i32; 2]> {
+    let (a, b) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+    let (a, b) = if a + b > 1.0 { (1.0 - a, 1.0 - b) } else { (a, b) };
+    let mix = |c: [i32; 3]| {
+        let c = c.map(f64::from);
+        (c[0] + (c[1] - c[0]) * a + (c[2] - c[0]) * b).round() as i32
+    };
+    let p = [mix(t.x), mix(t.y)];
+    weights(t, p).iter().all(|w| *w >= 0).then_some(p)
+}
+
+/// Calls `check(triangle, point, lane, varyings)` for points inside every triangle of the plan.
+pub fn look(
+    plan: &Plan,
+    random: &mut Random,
+    mut check: impl FnMut(&Triangle, [i32; 2], usize, &Varyings),
+) -> usize {
+    let bins = bins(plan);
+    let mut looked = 0;
+    for chunk in &bins.chunks {
+        for t in &chunk.triangles {
+            let draw = &plan.draws[t.draw as usize];
+            let source =
+                Source::new(&plan.items[draw.item as usize], &draw.surface, &[], &plan.view, DVec3::ZERO);
+            let mut records = Records::new(&source);
+            records.push(&source, t, chunk);
+            let points: Vec<_> = (0..POINTS).filter_map(|_| inside(t, random)).collect();
+            if points.is_empty() {
+                continue;
+            }
+            let fragments: Vec<_> =
+                points.iter().map(|&[x, y]| Fragment { record: 0, target: 0, x, y }).collect();
+            let mut varyings = Varyings::default();
+            dispatch!(Level::new(), simd => interpolate(simd, &records, &source, &fragments, &mut varyings));
+            for (lane, &point) in points.iter().enumerate() {
+                check(t, point, lane, &varyings);
+                looked += 1;
+            }
+        }
+    }
+    looked
+}
+
+/// Positions of three corners whose distances differ by up to `ratio` and whose places on the screen
+/// by up to `extent` px; the first is in the picture.
+pub fn corners(random: &mut Random, ratio: f64, extent: f64) -> [DVec3; 3] {
+    let corner = |random: &mut Random, extent: f64, w: f64| {
+        let screen = DVec2::new(random.between(-extent, extent), random.between(-extent, extent));
+        DVec3::new(screen.x / 128.0 * w, screen.y / 128.0 * w, -w)
+    };
+    let w = [1.0, random.magnitude(1.0, ratio), ratio];
+    let first = usize::from(random.bits().to_le_bytes()[0]) % 3;
+    [0, 1, 2].map(|i| corner(random, if i == 0 { 100.0 } else { extent }, w[(i + first) % 3]))
+}

@@ -1,0 +1,186 @@
+//! Textures of odd sizes, and coordinates on borders and beyond all reason.
+
+use crate::draw::{file, png};
+use crate::measure::at_most;
+use fearless_simd::Level;
+use rasterd::limits::Limits;
+use rasterd::math::simd::dispatch;
+use rasterd::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
+use rasterd::pipeline::shade::texture::sample;
+use rasterd::pipeline::shade::{BLOCK, varyings::Varyings};
+use rasterd::scene::{Document, compile};
+use serde_json::json;
+use std::sync::Arc;
+
+const FILTERS: [Filter; 3] = [Filter::Nearest, Filter::Bilinear, Filter::Trilinear];
+const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
+
+/// A different code in every texel of a small image.
+fn image(width: u32, height: u32) -> Arc<Image> {
+    let code = |i: u32, salt: u32| u8::try_from((i * 37 + salt * 91 + 11) % 256).expect("a byte");
+    let texels = (0..width * height).map(|i| [code(i, 0), code(i, 1), code(i, 2), code(i, 3)]).collect();
+    Arc::new(Image { width, height, texels })
+}
+
+/// What a texture shows at a coordinate, seen at its own size: red, green, blue, alpha.
+fn sampled(level: Level, texture: &Texture, u: f32, v: f32, step: f32) -> [f32; 4] {
+    let varyings = Varyings {
+        uv: [[u; BLOCK], [v; BLOCK]],
+        uv_per_pixel: [[step; BLOCK], [0.0; BLOCK], [0.0; BLOCK], [step; BLOCK]],
+        ..Varyings::default()
+    };
+    let mut out = [[f32::NAN; BLOCK]; 4];
+    dispatch!(level, simd => sample(simd, texture, &varyings, 1, &mut out));
+    out.map(|channel| channel[0])
+}
+
+/// Coordinates on borders, next to them, and far beyond f32's whole numbers.
+fn coordinates() -> Vec<f32> {
+    let u = f32::EPSILON / 2.0;
+    vec![
+        -0.0,
+        0.0,
+        1.0 - u,
+        1.0,
+        1.0 + 2.0 * u,
+        -1e-30,
+        -u,
+        1e20,
+        -1e20,
+        3e38,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::NAN,
+    ]
+}
+
+/// B23.
+#[test]
+fn a_texture_of_one_texel_is_that_texel_everywhere() {
+    let image = image(1, 1);
+    for color_space in [ColorSpace::Srgb, ColorSpace::Linear] {
+        let texel = image.texels[0].map(f64::from);
+        let exact = [0, 1, 2, 3].map(|c| match color_space {
+            ColorSpace::Srgb if c < 3 => crate::closed_form::decode(image.texels[0][c]),
+            _ => texel[c] / 255.0,
+        });
+        for filter in FILTERS {
+            for wrap in WRAPS {
+                let texture = Texture::new(image.clone(), color_space, filter, [wrap; 2]);
+                let expected = sampled(Level::new(), &texture, 0.5, 0.5, 0.0);
+                let off = (0..4).map(|c| (f64::from(expected[c]) / exact[c] - 1.0).abs()).fold(0.0, f64::max);
+                // Decoding is rounded once.
+                at_most(&format!("B23 1×1 {filter:?} {wrap:?}"), "relative error", off, 6e-8);
+                for u in coordinates() {
+                    for step in [0.0, 1.0, 1e30, f32::INFINITY, f32::NAN] {
+                        assert_eq!(sampled(Level::new(), &texture, u, 0.3, step), expected, "u = {u}");
+                        assert_eq!(sampled(Level::new(), &texture, 0.3, u, step), expected, "v = {u}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// B23.
+#[test]
+fn coordinates_on_the_border_read_the_border_texel() {
+    let image = image(5, 3);
+    let u = f32::EPSILON / 2.0;
+    for wrap in WRAPS {
+        let texture = Texture::new(image.clone(), ColorSpace::Linear, Filter::Nearest, [wrap; 2]);
+        let column = |at: f32| {
+            let red = sampled(Level::new(), &texture, at, 0.99, 0.0)[0];
+            (0..5).find(|x| f32::from(image.texels[*x][0]) / 255.0 == red)
+        };
+        // Just above 1 the picture repeats, or goes on, or turns.
+        let (repeats, turns) = (matches!(wrap, Wrap::Repeat), matches!(wrap, Wrap::Mirror));
+        let last_or_first = if repeats { 0 } else { 4 };
+        assert_eq!(column(0.0), Some(0), "{wrap:?}");
+        assert_eq!(column(-0.0), Some(0), "{wrap:?}");
+        assert_eq!(column(1.0 - u), Some(4), "{wrap:?}");
+        assert_eq!(column(1.0), Some(last_or_first), "{wrap:?}");
+        assert_eq!(column(1.0 + 2.0 * u), Some(last_or_first), "{wrap:?}");
+        assert_eq!(column(-u), Some(if repeats { 4 } else { 0 }), "{wrap:?}");
+        assert_eq!(
+            column(1.3),
+            Some(if repeats {
+                1
+            } else if turns {
+                3
+            } else {
+                4
+            }),
+            "{wrap:?}"
+        );
+    }
+}
+
+/// B23.
+#[test]
+fn whatever_is_asked_the_answer_lies_between_the_texels_at_every_simd_level() {
+    for (width, height) in [(1, 1), (1, 7), (3, 5), (64, 2)] {
+        let image = image(width, height);
+        for filter in FILTERS {
+            for wrap in WRAPS {
+                let texture = Texture::new(image.clone(), ColorSpace::Linear, filter, [wrap; 2]);
+                for u in coordinates() {
+                    for v in coordinates() {
+                        for step in [0.0, 0.3, 1e30, f32::NAN] {
+                            let texel = sampled(Level::new(), &texture, u, v, step);
+                            assert!(
+                                texel.iter().all(|c| (0.0..=1.000_001).contains(c)),
+                                "{u} {v} {step}: {texel:?}"
+                            );
+                            for (name, level) in super::determinism::levels() {
+                                let same = sampled(level, &texture, u, v, step).map(f32::to_bits);
+                                assert_eq!(same, texel.map(f32::to_bits), "{name}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// B23.
+#[test]
+fn mips_of_every_size_keep_the_mean() {
+    for (width, height) in [(1, 9), (3, 5), (7, 1), (33, 17), (255, 129), (16_384, 1), (1, 16_384)] {
+        let image = image(width, height);
+        let texture = Texture::new(image.clone(), ColorSpace::Linear, Filter::Trilinear, [Wrap::Repeat; 2]);
+        let count = f64::from(width) * f64::from(height);
+        let (mut side, mut worst) = ([width, height], 0.0f64);
+        for level in texture.mips.iter() {
+            side = side.map(|n| (n / 2).max(1));
+            assert_eq!([level.width, level.height], side);
+            for c in 0..4 {
+                let mean = image.texels.iter().map(|t| f64::from(t[c])).sum::<f64>() / count / 255.0;
+                let size = level.texels.len() as f64;
+                let here = level.texels.iter().map(|t| f64::from(t[c])).sum::<f64>() / size / 65535.0;
+                worst = worst.max((here - mean).abs());
+            }
+        }
+        assert_eq!(side, [1, 1]);
+        // 2u for each of at most 14 levels, and half a code of 16 bits once: a level is made from the
+        // unrounded one above.
+        let bound = 14.0 * 2.0 * 6e-8 + 0.5 / 65535.0;
+        at_most(&format!("B23 mips of {width}×{height}"), "shift of the mean", worst, bound);
+    }
+}
+
+/// B23.
+#[test]
+fn images_that_are_too_large_or_damaged_are_refused() {
+    let document =
+        json!({ "textures": { "t": { "file": "t.png" } }, "materials": { "m": { "diffuse_map": "t" } } });
+    let document = Document::from_json(&document).expect("a valid document");
+    let compiled = |bytes: Vec<u8>| compile(&document, &file("t.png", bytes), None, &Limits::default());
+    let whole = png(9, 5, |_, _| [1, 2, 3, 255]);
+    assert!(compiled(whole.clone()).is_ok());
+    assert!(compiled(whole[..whole.len() / 2].to_vec()).is_err());
+    assert!(compiled(Vec::new()).is_err());
+    assert!(compiled(png(16_385, 1, |_, _| [0; 4])).is_err());
+    assert!(compiled(png(16_384, 1, |_, _| [0; 4])).is_ok());
+}

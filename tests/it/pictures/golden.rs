@@ -1,0 +1,226 @@
+//! Golden pictures: `tests/golden/<pass>/<claim>.png`, one cause each, compared byte by byte.
+//!
+//! A failure writes `<claim>.actual.png` and `<claim>.difference.png` (differing pixels white) under
+//! `target/golden/<pass>/`. `RASTERD_BLESS=1 cargo test --test it golden` rewrites the pictures; look at
+//! every one of them before it is committed.
+
+use crate::draw::{file, frame, output, png, samples, scene_with};
+use rasterd::encode;
+use rasterd::pipeline::Frame;
+use rasterd::plan::{FrameRequest, Output};
+use rasterd::scene::Files;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// A picture as its file holds it.
+#[derive(PartialEq)]
+struct Decoded {
+    width: u32,
+    height: u32,
+    color: png::ColorType,
+    depth: png::BitDepth,
+    bytes: Vec<u8>,
+}
+
+fn decode(file: &[u8]) -> Decoded {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a small picture")];
+    let info = reader.next_frame(&mut bytes).expect("a whole PNG");
+    bytes.truncate(info.buffer_size());
+    Decoded { width: info.width, height: info.height, color: info.color_type, depth: info.bit_depth, bytes }
+}
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn write(path: &Path, bytes: &[u8]) {
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder to write to");
+    std::fs::write(path, bytes).expect("a file to write to");
+}
+
+/// White where two pictures of one kind differ.
+fn difference(actual: &Decoded, golden: &Decoded) -> Vec<u8> {
+    let size = actual.bytes.len() / (actual.width * actual.height) as usize;
+    let at = |picture: &Decoded, i: usize| picture.bytes.get(i * size..(i + 1) * size).map(<[u8]>::to_vec);
+    png(actual.width, actual.height, |x, y| {
+        let i = (y * actual.width + x) as usize;
+        if at(actual, i) == at(golden, i) { [0, 0, 0, 255] } else { [255; 4] }
+    })
+}
+
+/// Compares a frame with `tests/golden/<name>.png`.
+#[track_caller]
+fn assert_golden(name: &str, frame: &Frame) {
+    let golden = root().join("tests/golden").join(name).with_extension("png");
+    let actual = encode::png(frame);
+    if std::env::var_os("RASTERD_BLESS").is_some_and(|value| value == "1") {
+        write(&golden, &actual);
+        return;
+    }
+    let expected =
+        decode(&std::fs::read(&golden).unwrap_or_else(|error| panic!("{}: {error}", golden.display())));
+    let decoded = decode(&actual);
+    if decoded != expected {
+        let beside = root().join("target/golden").join(name);
+        write(&beside.with_extension("actual.png"), &actual);
+        write(&beside.with_extension("difference.png"), &difference(&decoded, &expected));
+        panic!("{name} differs: see {}", beside.with_extension("difference.png").display());
+    }
+}
+
+fn draw(document: &Value, files: &Files, request: &FrameRequest) -> Frame {
+    frame(&scene_with(document, files), request)
+}
+
+/// Draws a document without files as it is.
+#[track_caller]
+fn check(name: &str, document: &Value) {
+    assert_golden(name, &draw(document, &Files::default(), &FrameRequest::default()));
+}
+
+/// One unlit triangle, white on black.
+fn triangle(count: u32) -> Value {
+    json!({
+        "camera": { "position": [0, 0, 3], "target": [0, 0, 0], "fov_y_deg": 40 },
+        "environment": { "background": { "type": "color", "color": "#000" } },
+        "lights": {},
+        "materials": { "white": { "shading": "unlit", "diffuse": [1, 1, 1], "double_sided": true } },
+        "meshes": { "one": { "type": "triangles", "positions": [[-0.9, -0.8, 0], [0.95, -0.3, 0], [-0.2, 0.9, 0]] } },
+        "instances": { "one": { "mesh": "one", "material": "white" } },
+        "render": { "width": 64, "height": 64, "samples": count },
+    })
+}
+
+/// Shapes on a checkered floor under a sun.
+fn still_life() -> Value {
+    json!({
+        "camera": { "position": [1.9, 2.0, 3.6], "target": [0.1, 0.35, 0], "fov_y_deg": 40 },
+        "environment": { "ambient": [0.12, 0.13, 0.16] },
+        "lights": { "sun": { "type": "directional", "direction": [-0.6, -1, -0.5], "intensity": 0.9,
+            "shadow": { "filter": "hard", "resolution": 512 } } },
+        "textures": { "tiles": { "checker": { "colors": ["#446", "#dda"], "cells": 8 }, "filter": "trilinear" } },
+        "materials": {
+            "floor": { "diffuse": [1, 1, 1], "diffuse_map": "tiles" },
+            "red": { "diffuse": "#c0392b", "specular": [0.5, 0.5, 0.5], "shininess": 40 },
+            "teal": { "diffuse": "#16a085" },
+        },
+        "meshes": {
+            "floor": { "type": "plane", "size": [200, 200], "uv_repeat": [50, 50] },
+            "box": { "type": "box", "size": [0.8, 0.8, 0.8] }, "ball": { "type": "sphere" },
+        },
+        "instances": {
+            "ball": { "mesh": "ball", "material": "red", "translation": [-0.6, 0.5, 0.2] },
+            "crate": { "mesh": "box", "material": "teal", "translation": [0.7, 0.4, -0.2], "rotation_deg": [0, 30, 0] },
+            "floor": { "mesh": "floor", "material": "floor" },
+        },
+        "render": { "width": 96, "height": 72, "samples": 4 },
+    })
+}
+
+#[test]
+fn golden_coverage() {
+    check("cover/one_sample_has_hard_edges", &triangle(1));
+    check("cover/sixteen_samples_have_soft_edges", &triangle(16));
+    let mut clear = triangle(8);
+    clear["environment"]["background"] = json!({ "type": "transparent" });
+    check("cover/a_transparent_background_keeps_straight_colour", &clear);
+    let mut near = triangle(1);
+    near["instances"]["one"]["rotation_deg"] = json!([0, 70, 0]);
+    near["camera"]["near"] = json!(2.8);
+    check("cover/the_near_plane_cuts", &near);
+}
+
+#[test]
+fn golden_shading() {
+    let mut ball = still_life();
+    ball["instances"] = json!({ "ball": ball["instances"]["ball"] });
+    ball["camera"] = json!({ "position": [-0.6, 0.5, 2.4], "target": [-0.6, 0.5, 0.2], "fov_y_deg": 32 });
+    ball["environment"]["background"] = json!({ "type": "color", "color": "#222" });
+    ball["render"] = json!({ "width": 64, "height": 64, "samples": 4 });
+    ball["lights"]["sun"]["direction"] = json!([-0.6, -0.7, -0.5]);
+    for shading in ["blinn_phong", "lambert", "unlit", "normal"] {
+        ball["materials"]["red"]["shading"] = json!(shading);
+        check(&format!("shade/a_ball_in_{shading}"), &ball);
+    }
+    ball["materials"]["red"]["shading"] = json!("blinn_phong");
+    ball["lights"] = json!({ "lamp": { "type": "point", "position": [-0.2, 1.2, 0.9], "intensity": 1.2 } });
+    check("shade/a_point_light_fades_with_distance", &ball);
+    ball["meshes"]["ball"] = json!({ "type": "torus", "radius": 0.35, "tube": 0.14 });
+    ball["instances"]["ball"]["rotation_deg"] = json!([60, 0, 20]);
+    ball["instances"]["ball"]["scale"] = json!([-1.2, 0.8, 1]);
+    check("shade/a_mirrored_stretched_torus_keeps_its_light", &ball);
+}
+
+#[test]
+fn golden_textures() {
+    let floor = |filter: &str| {
+        let mut document = still_life();
+        document["instances"] = json!({ "floor": document["instances"]["floor"] });
+        document["textures"]["tiles"]["filter"] = json!(filter);
+        document["materials"]["floor"]["shading"] = json!("unlit");
+        document["camera"] = json!({ "position": [0, 1.2, 0], "target": [0.4, 0.8, -2], "fov_y_deg": 55 });
+        document["render"]["samples"] = json!(1);
+        document
+    };
+    check("texture/nearest_aliases_at_the_horizon", &floor("nearest"));
+    check("texture/trilinear_fades_to_the_mean_at_the_horizon", &floor("trilinear"));
+    // A gradient with a red corner at u = v = 0, so that every turn and mirror image shows.
+    let ramp = |x: u32, y: u32| {
+        if x < 3 && y > 4 {
+            [220, 30, 30, 255]
+        } else {
+            let part = |n: u32| u8::try_from(40 + 28 * n).expect("eight texels");
+            [part(x), part(7 - y), 90, 255]
+        }
+    };
+    let files = file("ramp.png", png(8, 8, ramp));
+    for wrap in ["repeat", "clamp", "mirror"] {
+        let document = json!({
+            "camera": { "position": [0, 0, 5], "target": [0, 0, 0], "orthographic": { "height": 2 } },
+            "lights": {},
+            "textures": { "ramp": { "file": "ramp.png", "wrap": wrap, "filter": "bilinear" } },
+            "materials": { "ramp": { "shading": "unlit", "diffuse": [1, 1, 1], "diffuse_map": "ramp" } },
+            "meshes": { "chart": { "type": "triangles", "indices": [0, 1, 2, 0, 2, 3],
+                "positions": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]],
+                "uvs": [[-1.25, -1.25], [2.25, -1.25], [2.25, 2.25], [-1.25, 2.25]] } },
+            "instances": { "chart": { "mesh": "chart", "material": "ramp" } },
+            "render": { "width": 84, "height": 84, "samples": 1 },
+        });
+        assert_golden(&format!("texture/wrap_{wrap}"), &draw(&document, &files, &FrameRequest::default()));
+    }
+}
+
+#[test]
+fn golden_shadows() {
+    check("shadow/hard_shadows_lie_on_a_floor", &still_life());
+    let mut grazing = still_life();
+    grazing["lights"]["sun"]["direction"] = json!([-1, -0.15, -0.4]);
+    grazing["lights"]["sun"]["intensity"] = json!(4);
+    check("shadow/grazing_light_leaves_no_acne", &grazing);
+}
+
+#[test]
+fn golden_backgrounds() {
+    let sky = json!({ "lights": {}, "render": { "width": 64, "height": 64 },
+        "camera": { "position": [0, 0, 0], "target": [0, 0, -1], "fov_y_deg": 150 } });
+    check("sky/a_gradient_from_below_to_above", &sky);
+}
+
+#[test]
+fn golden_outputs() {
+    let mut document = still_life();
+    document["camera"]["far"] = json!(9);
+    let outputs = [
+        ("depth", Output::Depth),
+        ("normal", Output::Normal),
+        ("albedo", Output::Albedo),
+        ("instance", Output::Instance),
+    ];
+    for (name, what) in outputs {
+        assert_golden(&format!("output/{name}"), &draw(&document, &Files::default(), &output(what)));
+    }
+    document["camera"]["orthographic"] = json!({ "height": 2.6 });
+    document["camera"].as_object_mut().expect("a camera").remove("fov_y_deg");
+    assert_golden("output/an_orthographic_camera", &draw(&document, &Files::default(), &samples(4)));
+}

@@ -1,0 +1,11 @@
+//! Pictures against closed forms in f64, and a small set of golden pictures.
+
+mod coverage;
+mod faces;
+mod golden;
+mod lighting;
+mod outputs;
+mod sampler;
+mod shadows;
+mod sky;
+mod textures;

@@ -1,0 +1,188 @@
+//! What the data outputs show, and `pick`.
+
+use crate::closed_form::{Camera, Lens, Ray, hit_box, hit_plane, hit_sphere};
+use crate::draw::{Picture, frame, output, pick, scene, values};
+use crate::measure::{at_most, none_of};
+use glam::DVec3;
+use rasterd::plan::Output;
+use serde_json::{Value, json};
+
+/// A ball and a box on a floor; their names in order are ball, crate, floor.
+fn still_life(camera: &Camera) -> Value {
+    json!({
+        "camera": camera.document(),
+        "environment": { "background": { "type": "color", "color": "#fff" } },
+        "lights": { "sun": { "type": "directional", "direction": [-1, -2, -1], "shadow": { "filter": "hard" } } },
+        "materials": {
+            "blue": { "diffuse": "#2040c0", "emissive": [1, 1, 1] }, "green": { "diffuse": "#30a050", "shading": "unlit" },
+            "grey": { "diffuse": "#808080" },
+        },
+        "meshes": {
+            "ball": { "type": "sphere", "radius": 0.5, "segments": 256, "rings": 128 },
+            "box": { "type": "box" }, "floor": { "type": "plane", "size": [8, 8] },
+        },
+        "instances": {
+            "floor": { "mesh": "floor", "material": "grey" },
+            "crate": { "mesh": "box", "material": "green", "translation": [0.9, 0.5, 0.2] },
+            "ball": { "mesh": "ball", "material": "blue", "translation": [-0.6, 0.5, 0] },
+        },
+        "render": camera.render(4),
+    })
+}
+
+/// 1 + an instance's place in the sorted names, and the distance along the axis.
+type Hit = (u16, f64);
+
+/// The nearest instance on a line of sight.
+fn seen(ray: Ray) -> Option<Hit> {
+    let box_centre = DVec3::new(0.9, 0.5, 0.2);
+    let floor = hit_plane(ray, DVec3::ZERO, DVec3::Y).filter(|&s| ray.at(s).abs().max_element() < 4.0);
+    let hits = [
+        (1, hit_sphere(ray, DVec3::new(-0.6, 0.5, 0.0), 0.5)),
+        (2, hit_box(ray, box_centre - 0.5, box_centre + 0.5)),
+        (3, floor.filter(|_| ray.direction.y < 0.0)),
+    ];
+    let known = hits.into_iter().filter_map(|(id, s)| s.map(|s| (id, s)));
+    known.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn cameras() -> [Camera; 2] {
+    let perspective = Camera::perspective([1.9, 2.2, 4.1], [0.1, 0.3, 0.0], 45.0, 120, 90);
+    [perspective, Camera { lens: Lens::Orthographic(3.4), ..perspective }]
+}
+
+/// Pixels whose instance is beyond doubt. The ball's outline is that of its facets, 4·10⁻⁵ inside.
+fn certain(camera: &Camera) -> Vec<(u32, u32, Option<Hit>)> {
+    let id = |ray: Ray| seen(ray).map(|hit| hit.0);
+    let steady = |&(x, y): &(u32, u32)| camera.steady(x, y, 0.05, id).is_some();
+    camera.pixels().filter(steady).map(|(x, y)| (x, y, seen(camera.centre(x, y)))).collect()
+}
+
+#[test]
+fn instance_ids_are_places_in_the_sorted_names_and_never_blended() {
+    for camera in cameras() {
+        let ids = values(frame(&scene(&still_life(&camera)), &output(Output::Instance)));
+        assert!(ids.iter().all(|id| *id <= 3));
+        let pixels = certain(&camera);
+        let wrong = pixels
+            .iter()
+            .filter(|&&(x, y, hit)| ids[(y * camera.width + x) as usize] != hit.map_or(0, |(id, _)| id));
+        none_of("output=instance", "wrong ids", wrong.count(), pixels.len());
+        assert!((1..=3).all(|id| { pixels.iter().any(|(_, _, hit)| hit.is_some_and(|hit| hit.0 == id)) }));
+    }
+}
+
+#[test]
+fn albedo_is_the_diffuse_colour_whatever_the_shading() {
+    let camera = cameras()[0];
+    let picture = Picture::new(frame(&scene(&still_life(&camera)), &output(Output::Albedo)));
+    let codes = [[0; 3], [0x20, 0x40, 0xc0], [0x30, 0xa0, 0x50], [0x80; 3]];
+    let pixels = certain(&camera);
+    let wrong = pixels
+        .iter()
+        .filter(|&&(x, y, hit)| picture.at(x, y)[..3] != codes[usize::from(hit.map_or(0, |(id, _)| id))]);
+    none_of("output=albedo", "wrong pixels", wrong.count(), pixels.len());
+}
+
+/// Compares depths with the closed form.
+fn assert_depths(case: &str, camera: &Camera, document: &Value, near: f64, far: f64) {
+    let frame = frame(&scene(document), &output(Output::Depth));
+    let range = frame.depth_range.expect("a depth picture names its range");
+    at_most(case, "range", (range[0] - near).abs().max((range[1] / far - 1.0).abs()), 1e-12);
+    let depths = values(frame);
+    let (mut worst, mut checked) = (0.0f64, 0);
+    for (x, y, hit) in certain(camera) {
+        // Where the ball is seen at a grazing angle its facets lie visibly deeper.
+        let ray = camera.centre(x, y);
+        let is_grazing = |s: f64| {
+            let normal = (ray.at(s) - DVec3::new(-0.6, 0.5, 0.0)).normalize();
+            normal.dot(ray.direction.normalize()) > -0.3
+        };
+        if hit.is_some_and(|(id, s)| id == 1 && is_grazing(s)) {
+            continue;
+        }
+        let share = hit.map_or(1.0, |(_, z)| ((z - near) / (far - near)).clamp(0.0, 1.0));
+        worst = worst.max((f64::from(depths[(y * camera.width + x) as usize]) - 65535.0 * share).abs());
+        checked += 1;
+    }
+    assert!(checked > 5000);
+    at_most(case, "largest difference in codes", worst, 4.0);
+}
+
+#[test]
+fn depth_is_the_distance_along_the_axis_between_near_and_far() {
+    for (name, camera) in ["perspective", "orthographic"].into_iter().zip(cameras()) {
+        let mut document = still_life(&camera);
+        document["camera"]["near"] = json!(0.5);
+        document["camera"]["far"] = json!(20);
+        assert_depths(&format!("depth with far, {name}"), &camera, &document, 0.5, 20.0);
+    }
+}
+
+#[test]
+fn without_far_the_depth_range_ends_at_the_farthest_point() {
+    for (name, camera) in ["perspective", "orthographic"].into_iter().zip(cameras()) {
+        let forward = camera.axes()[2];
+        let corner = |[x, y, z]: [f64; 3]| (DVec3::new(x * 4.0, y, z * 4.0) - camera.eye).dot(forward);
+        let corners = [-1.0, 1.0].into_iter().flat_map(|x| [-1.0, 1.0].map(|z| corner([x, 0.0, z])));
+        // The bounds are those of all instances together: the floor, and 1 high.
+        let high = [-1.0, 1.0].into_iter().flat_map(|x| [-1.0, 1.0].map(|z| corner([x, 1.0, z])));
+        let far = corners.chain(high).fold(0.0, f64::max);
+        assert_depths(&format!("depth without far, {name}"), &camera, &still_life(&camera), 0.1, far);
+    }
+}
+
+#[test]
+fn nothing_outside_near_and_far_is_drawn() {
+    for (name, camera) in ["perspective", "orthographic"].into_iter().zip(cameras()) {
+        let (near, far) = (4.2, 5.3);
+        let mut document = still_life(&camera);
+        document["camera"]["near"] = json!(near);
+        document["camera"]["far"] = json!(far);
+        // The floor alone: what a cut opens in the others shows their inside.
+        document["instances"] = json!({ "floor": document["instances"]["floor"] });
+        let inside = |ray: Ray| {
+            let hit = hit_plane(ray, DVec3::ZERO, DVec3::Y).filter(|&s| ray.at(s).abs().max_element() < 4.0);
+            hit.is_some_and(|z| ray.direction.y < 0.0 && z > near && z < far)
+        };
+        let ids = values(frame(&scene(&document), &output(Output::Instance)));
+        let certain = |&(x, y): &(u32, u32)| camera.steady(x, y, 0.02, inside).map(|known| (x, y, known));
+        let pixels: Vec<_> = camera.pixels().filter_map(|pixel| certain(&pixel)).collect();
+        let wrong =
+            pixels.iter().filter(|&&(x, y, known)| (ids[(y * camera.width + x) as usize] > 0) != known);
+        none_of(&format!("near and far, {name}"), "wrong pixels", wrong.count(), pixels.len());
+    }
+}
+
+#[test]
+fn pick_agrees_with_instance_and_depth_and_knows_the_position() {
+    for (name, camera) in ["perspective", "orthographic"].into_iter().zip(cameras()) {
+        let mut document = still_life(&camera);
+        document["camera"]["far"] = json!(20);
+        let scene = scene(&document);
+        let ids = values(frame(&scene, &output(Output::Instance)));
+        let depths = values(frame(&scene, &output(Output::Depth)));
+        let (mut worst, mut off, mut hits) = (0.0f64, 0.0f64, 0);
+        for (x, y) in camera.pixels().filter(|(x, y)| x % 9 == 4 && y % 7 == 3) {
+            let at = (y * camera.width + x) as usize;
+            let Some(hit) = pick(&scene, x, y) else {
+                assert_eq!((ids[at], depths[at]), (0, u16::MAX));
+                continue;
+            };
+            hits += 1;
+            assert_eq!(u32::from(ids[at]), hit.instance + 1);
+            let code = (65535.0 * (hit.depth - 0.1) / (20.0 - 0.1) + 0.5).floor();
+            assert_eq!(f64::from(depths[at]), code, "({x}, {y})");
+            // A centre on a line of sight is where its instance is.
+            let p = camera.centre(x, y).at(hit.depth);
+            worst = worst.max((hit.position - p).length());
+            if hit.instance == 2 {
+                off = off.max(hit.position.y.abs());
+            }
+        }
+        assert!(hits > 50);
+        at_most(&format!("pick, {name}"), "position off the line of sight", worst, 1e-9);
+        // A sub-pixel is 1.5·10⁻⁴ units at this distance, foreshortened on the floor.
+        at_most(&format!("pick, {name}"), "height over the floor", off, 3e-4);
+    }
+}

@@ -1,0 +1,105 @@
+//! Health, version, the page, the description.
+
+use crate::client::Client;
+use serde_json::Value;
+
+#[tokio::test]
+async fn a_closing_server_lives_but_is_not_ready() {
+    let client = Client::new();
+    assert_eq!(client.get("/readyz").await.status, 200);
+    client.app.close();
+    let reply = client.get("/readyz").await;
+    reply.problem(503);
+    reply.header("retry-after");
+    assert_eq!(client.get("/healthz").await.status, 200);
+}
+
+#[tokio::test]
+async fn the_version_is_the_crates() {
+    let version = Client::new().get("/version").await.json();
+    assert_eq!(version["version"], env!("CARGO_PKG_VERSION"));
+    assert!(version["simd"].is_string() && version["threads"] == 2);
+}
+
+#[tokio::test]
+async fn the_page_and_its_parts_are_sent_once() {
+    let client = Client::new();
+    for (path, content_type) in
+        [("/", "text/html"), ("/page.css", "text/css"), ("/page.js", "text/javascript")]
+    {
+        let part = client.get(path).await;
+        assert_eq!(part.status, 200, "{path}");
+        assert!(part.header("content-type").starts_with(content_type), "{path}");
+        let again = client.get_with(path, &[("if-none-match", part.header("etag"))]).await;
+        assert_eq!((again.status.as_u16(), again.body.len()), (304, 0), "{path}");
+    }
+}
+
+#[tokio::test]
+async fn all_that_the_page_refers_to_is_there() {
+    let client = Client::new();
+    let page = String::from_utf8(client.get("/").await.body.to_vec()).expect("text");
+    let attributes = page.split(['"', '\'']).filter(|value| value.starts_with('/'));
+    for path in attributes.filter(|path| !path.starts_with("/scenes/")) {
+        assert_eq!(client.get(path).await.status, 200, "{path}");
+    }
+    assert!(!page.contains("://"), "the page loads from another host");
+}
+
+#[tokio::test]
+async fn a_sane_request_id_is_kept_and_another_replaced() {
+    let client = Client::new();
+    let kept = client.get_with("/healthz", &[("x-request-id", "abc-123")]).await;
+    assert_eq!(kept.header("x-request-id"), "abc-123");
+    let replaced = client.get_with("/none", &[("x-request-id", "<script>")]).await;
+    assert_ne!(replaced.header("x-request-id"), "<script>");
+    replaced.problem(404);
+}
+
+#[tokio::test]
+async fn the_description_has_every_route_with_its_statuses() {
+    let api = Client::new().get("/openapi.json").await.json();
+    assert_eq!(api["openapi"], "3.1.0");
+    for (path, methods) in [
+        ("/", "get"),
+        ("/healthz", "get"),
+        ("/openapi.json", "get"),
+        ("/readyz", "get"),
+        ("/render.png", "post"),
+        ("/scenes", "get post"),
+        ("/scenes/{id}", "get put patch delete"),
+        ("/scenes/{id}/files", "get"),
+        ("/scenes/{id}/files/{name}", "get put delete"),
+        ("/scenes/{id}/frame.png", "get post"),
+        ("/scenes/{id}/pick", "get"),
+        ("/version", "get"),
+    ] {
+        for method in methods.split(' ') {
+            let operation = &api["paths"][path][method];
+            assert!(operation["summary"].is_string(), "{method} {path}");
+            let parameters = operation.get("parameters");
+            assert!(parameters.is_none_or(Value::is_array), "{method} {path}");
+            assert!(operation["responses"]["500"].is_object(), "{method} {path}");
+        }
+    }
+    let frame = &api["paths"]["/scenes/{id}/frame.png"]["get"]["responses"];
+    for status in ["200", "304", "403", "404", "406", "413", "422", "500", "503", "504"] {
+        assert!(frame[status].is_object(), "{status}");
+    }
+}
+
+#[tokio::test]
+async fn operations_have_names_of_their_own() {
+    let api = Client::new().get("/openapi.json").await.json();
+    let operations = api["paths"]
+        .as_object()
+        .expect("paths")
+        .values()
+        .flat_map(|item| item.as_object().expect("an item").values());
+    let mut names: Vec<&str> =
+        operations.map(|operation| operation["operationId"].as_str().expect("a name")).collect();
+    let all = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), all);
+}
