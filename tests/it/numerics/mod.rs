@@ -21,6 +21,7 @@ mod determinism;
 mod document;
 mod enormous;
 mod interpolated;
+mod limits;
 mod normals;
 mod oracle;
 mod samples;
