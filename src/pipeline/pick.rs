@@ -3,7 +3,6 @@
 use super::tiles::cover::Region;
 use super::tiles::{Scratch, tile_shift};
 use super::work::{Cancelled, Work};
-use crate::math::simd::dispatch;
 use crate::plan::Plan;
 use glam::DVec3;
 
@@ -30,7 +29,7 @@ pub fn pick(plan: &Plan, x: u32, y: u32, work: &Work) -> Result<Option<Hit>, Can
     let shift = tile_shift(plan.samples);
     let place = [x >> shift, y >> shift];
     let mut scratch = Scratch::default();
-    dispatch!(work.level, simd => scratch.find_visible(simd, &bins, place, plan.samples));
+    scratch.find_visible(work.level, &bins, place, plan.samples);
     let within = [x, y].map(|c| (c & ((1 << shift) - 1)) as usize);
     let Some(seen) = scratch.seen((within[1] << shift) + within[0], &bins) else { return Ok(None) };
     let screen = Region::of_tile(&bins.grid, place[0], place[1]).centre(within);

@@ -12,9 +12,8 @@ use crate::plan::{Draw, Plan};
 
 /// Encodes a tile's colours: clamp to 0–1, sRGB, `floor(255 x + ½)`. Alpha is the coverage where the
 /// background is transparent, 255 else; colours are straight.
-#[inline(always)]
-pub fn encode_tile<S: Simd>(
-    simd: S,
+pub fn encode_tile(
+    level: Level,
     fragments: &Fragments,
     colors: &[Vec<f32>; 3],
     samples: u32,
@@ -22,10 +21,19 @@ pub fn encode_tile<S: Simd>(
     side: usize,
     rows: Vec<&mut [[u8; 4]]>,
 ) {
-    let mut coverage = Vec::new();
-    if !opaque {
-        coverage = coverage_of(fragments, samples, side);
-    }
+    let coverage = if opaque { Vec::new() } else { coverage_of(fragments, samples, side) };
+    dispatch!(level, simd => encode_kernel(simd, colors, &coverage, opaque, side, rows));
+}
+
+#[inline(always)]
+fn encode_kernel<S: Simd>(
+    simd: S,
+    colors: &[Vec<f32>; 3],
+    coverage: &[f32],
+    opaque: bool,
+    side: usize,
+    rows: Vec<&mut [[u8; 4]]>,
+) {
     for (y, row) in rows.into_iter().enumerate() {
         for (x, pixels) in (0..).step_by(LANES).zip(row.chunks_mut(LANES)) {
             let at = y * side + x;
@@ -97,7 +105,7 @@ fn alpha_code(coverage: f32) -> u8 {
 pub fn draw_values(plan: &Plan, bins: &Bins, pixels: &mut [u16], work: &Work) -> Result<(), Cancelled> {
     let side = 1usize << bins.grid.tile_shift;
     work.map(tiles::split(pixels, &bins.grid), Scratch::default, |scratch, tile| {
-        dispatch!(work.level, simd => scratch.find_visible(simd, bins, tile.place, 1));
+        scratch.find_visible(work.level, bins, tile.place, 1);
         let region = Region::of_tile(&bins.grid, tile.place[0], tile.place[1]);
         for (y, row) in tile.rows.into_iter().enumerate() {
             for (x, pixel) in row.iter_mut().enumerate() {

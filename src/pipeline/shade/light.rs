@@ -42,41 +42,82 @@ impl LightSource {
 
 /// What a surface reflects, fragment by fragment, linear RGB.
 pub struct Reflectance<'a> {
+    /// To ambient light; `None`: as `diffuse`.
+    pub ambient: Option<Vec3>,
     /// Diffuse.
     pub diffuse: &'a [[f32; BLOCK]; 3],
     /// Specular and its exponent.
     pub specular: Option<(&'a [[f32; BLOCK]; 3], f32)>,
 }
 
-/// Unit vectors towards the viewer.
-#[inline(always)]
-pub fn towards_viewer<S: Simd>(simd: S, varyings: &Varyings, lighting: &Lighting, at: usize) -> Vec3x8<S> {
-    match lighting.view.projection {
-        Projection::Orthographic => Vec3x8::splat(simd, -lighting.view.forward.as_vec3()),
-        Projection::Perspective => {
-            let anchor = Vec3x8::splat(simd, lighting.anchor.as_vec3());
-            let p = Vec3x8::load(simd, &varyings.position, at) + anchor;
-            let (v, _) = direction_and_length(simd, p);
-            Vec3x8 { x: -v.x, y: -v.y, z: -v.z }
+/// Adds what the surface makes of ambient light.
+pub fn add_ambient(
+    level: Level,
+    ambient: Vec3,
+    reflectance: &Reflectance,
+    count: usize,
+    out: &mut [[f32; BLOCK]; 3],
+) {
+    dispatch!(level, simd => {
+        for at in (0..count).step_by(LANES) {
+            let factor = match reflectance.ambient {
+                Some(color) => Vec3x8::splat(simd, color),
+                None => Vec3x8::load(simd, reflectance.diffuse, at),
+            };
+            (Vec3x8::load(simd, out, at) + factor * Vec3x8::splat(simd, ambient)).store(out, at);
         }
-    }
+    });
 }
 
-/// Adds what `light` contributes to eight fragments from index `at`; `visibility` is 1 where the
-/// light is seen and 0 in its shadow.
-#[inline(always)]
+/// One bit for each fragment of a block: whether it faces the light.
+pub fn facing(level: Level, light: &LightSource, varyings: &Varyings, count: usize) -> u64 {
+    dispatch!(level, simd => {
+        let mut bits = 0;
+        for at in (0..count).step_by(LANES) {
+            let normal = Vec3x8::load(simd, &varyings.normal, at);
+            let position = Vec3x8::load(simd, &varyings.position, at);
+            let (towards, _) = incoming(simd, light, position);
+            let lit = normal.dot(towards).simd_gt(f32x8::splat(simd, 0.0));
+            bits |= lit.to_bitmask() << at;
+        }
+        bits
+    })
+}
+
+/// Adds what a light contributes to a block; `visibility` is 1 where it is seen and 0 in its shadow.
 #[expect(clippy::too_many_arguments, reason = "one term of the lighting sum, with all it depends on")]
-pub fn add_light<S: Simd>(
+pub fn add_light(
+    level: Level,
+    light: &LightSource,
+    visibility: &[f32; BLOCK],
+    varyings: &Varyings,
+    lighting: &Lighting,
+    reflectance: &Reflectance,
+    count: usize,
+    out: &mut [[f32; BLOCK]; 3],
+) {
+    dispatch!(level, simd => {
+        for at in (0..count).step_by(LANES) {
+            let seen = f32x8::from_slice(simd, &visibility[at..at + LANES]);
+            add_to_eight(simd, light, seen, varyings, lighting, reflectance, at, out);
+        }
+    });
+}
+
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "eight fragments of `add_light`")]
+fn add_to_eight<S: Simd>(
     simd: S,
     light: &LightSource,
-    visibility: impl Fn() -> f32x8<S>,
-    normal: Vec3x8<S>,
-    viewer: Vec3x8<S>,
-    position: Vec3x8<S>,
+    visibility: f32x8<S>,
+    varyings: &Varyings,
+    lighting: &Lighting,
     reflectance: &Reflectance,
     at: usize,
-    sum: &mut Vec3x8<S>,
+    out: &mut [[f32; BLOCK]; 3],
 ) {
+    let normal = Vec3x8::load(simd, &varyings.normal, at);
+    let position = Vec3x8::load(simd, &varyings.position, at);
     let (towards, attenuation) = incoming(simd, light, position);
     let zero = f32x8::splat(simd, 0.0);
     let cosine = normal.dot(towards);
@@ -86,14 +127,27 @@ pub fn add_light<S: Simd>(
     }
     let mut reflected = Vec3x8::load(simd, reflectance.diffuse, at).scale(cosine);
     if let Some((color, shininess)) = reflectance.specular {
-        let half = (towards + viewer).normalize();
+        let half = (towards + towards_viewer(simd, position, lighting)).normalize();
         let highlight = specular_lobe(simd, normal, half, shininess);
         reflected = reflected + Vec3x8::load(simd, color, at).scale(highlight);
     }
-    let arriving = attenuation * visibility();
-    let gain = Vec3x8::splat(simd, light.radiance).scale(arriving);
+    let gain = Vec3x8::splat(simd, light.radiance).scale(attenuation * visibility);
     let dark = Vec3x8 { x: zero, y: zero, z: zero };
-    *sum = *sum + (reflected * gain).select(lit, dark);
+    let sum = Vec3x8::load(simd, out, at) + (reflected * gain).select(lit, dark);
+    sum.store(out, at);
+}
+
+/// Unit vectors towards the viewer.
+#[inline(always)]
+fn towards_viewer<S: Simd>(simd: S, position: Vec3x8<S>, lighting: &Lighting) -> Vec3x8<S> {
+    match lighting.view.projection {
+        Projection::Orthographic => Vec3x8::splat(simd, -lighting.view.forward.as_vec3()),
+        Projection::Perspective => {
+            let (v, _) =
+                direction_and_length(simd, position + Vec3x8::splat(simd, lighting.anchor.as_vec3()));
+            Vec3x8 { x: -v.x, y: -v.y, z: -v.z }
+        }
+    }
 }
 
 /// Unit vector and length, scaled by the largest component first, so that no square over- or

@@ -63,15 +63,20 @@ pub fn anchor(bounds: Option<Bounds>, view: &View) -> DVec3 {
 }
 
 /// Buffers of one block, kept between blocks.
-#[derive(Default)]
 pub struct Scratch {
     varyings: Varyings,
+    visibility: [f32; BLOCK],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self { varyings: Varyings::default(), visibility: [1.0; BLOCK] }
+    }
 }
 
 /// Shades up to [`BLOCK`] fragments of one draw.
-#[inline(always)]
-pub fn shade_block<S: Simd>(
-    simd: S,
+pub fn shade_block(
+    level: Level,
     fragments: &[Fragment],
     records: &Records,
     source: &Source,
@@ -80,20 +85,20 @@ pub fn shade_block<S: Simd>(
     out: &mut [[f32; BLOCK]; 3],
 ) {
     let (count, surface) = (fragments.len(), source.surface());
-    let varyings = &mut scratch.varyings;
-    varyings::interpolate(simd, records, source, fragments, varyings);
+    varyings::interpolate(level, records, source, fragments, &mut scratch.varyings);
+    let Scratch { varyings, visibility } = scratch;
     match surface.shading {
         Shading::VertexColor => *out = if surface.vertex_colors { varyings.color } else { [[1.0; BLOCK]; 3] },
         Shading::Normal => *out = varyings.normal.map(|axis| axis.map(normal_as_colour)),
         Shading::BlinnPhong | Shading::Lambert | Shading::Unlit => {
             let mut diffuse = [[0.0; BLOCK]; 3];
-            diffuse_colour(simd, surface, varyings, count, &mut diffuse);
+            diffuse_colour(level, surface, varyings, count, &mut diffuse);
             fill(&mut *out, surface.emissive);
             if let Some(map) = &surface.emissive_map {
-                multiply(simd, map, varyings, count, out);
+                multiply(level, map, varyings, count, out);
             }
             if surface.lit {
-                add_lights(simd, surface, varyings, &diffuse, lighting, count, out);
+                add_lights(level, surface, varyings, &diffuse, lighting, count, visibility, out);
             } else {
                 for (sum, term) in out.iter_mut().flatten().zip(diffuse.iter().flatten()) {
                     *sum += term;
@@ -108,9 +113,8 @@ pub fn shade_block<S: Simd>(
 }
 
 /// The diffuse colour of a block, with map and vertex colours.
-#[inline(always)]
-pub fn diffuse_colour<S: Simd>(
-    simd: S,
+fn diffuse_colour(
+    level: Level,
     surface: &Surface,
     varyings: &Varyings,
     count: usize,
@@ -118,7 +122,7 @@ pub fn diffuse_colour<S: Simd>(
 ) {
     fill(out, surface.diffuse);
     if let Some(map) = &surface.diffuse_map {
-        multiply(simd, map, varyings, count, out);
+        multiply(level, map, varyings, count, out);
     }
     if surface.vertex_colors {
         for (factor, color) in out.iter_mut().flatten().zip(varyings.color.iter().flatten()) {
@@ -135,16 +139,15 @@ fn fill(out: &mut [[f32; BLOCK]; 3], color: Vec3) {
 }
 
 /// Multiplies a colour by a map.
-#[inline(always)]
-fn multiply<S: Simd>(
-    simd: S,
+fn multiply(
+    level: Level,
     map: &crate::model::Texture,
     varyings: &Varyings,
     count: usize,
     out: &mut [[f32; BLOCK]; 3],
 ) {
     let mut texels = [[0.0; BLOCK]; 4];
-    texture::sample(simd, map, varyings, count, &mut texels);
+    texture::sample(level, map, varyings, count, &mut texels);
     for (channel, texel) in out.iter_mut().zip(&texels) {
         for (factor, t) in channel.iter_mut().zip(texel) {
             *factor *= t;
@@ -152,47 +155,40 @@ fn multiply<S: Simd>(
     }
 }
 
-#[inline(always)]
-fn add_lights<S: Simd>(
-    simd: S,
+/// Adds ambient light and that of every light.
+#[expect(clippy::too_many_arguments, reason = "the lighting sum, with all it depends on")]
+fn add_lights(
+    level: Level,
     surface: &Surface,
     varyings: &Varyings,
     diffuse: &[[f32; BLOCK]; 3],
     lighting: &Lighting,
     count: usize,
+    visibility: &mut [f32; BLOCK],
     out: &mut [[f32; BLOCK]; 3],
 ) {
     let mut specular = [[0.0; BLOCK]; 3];
     let specular = surface.specular.as_ref().map(|s| {
         fill(&mut specular, s.color);
         if let Some(map) = &s.map {
-            multiply(simd, map, varyings, count, &mut specular);
+            multiply(level, map, varyings, count, &mut specular);
         }
         (&specular, s.shininess)
     });
-    let reflectance = Reflectance { diffuse, specular };
-    for at in (0..count).step_by(LANES) {
-        let normal = Vec3x8::load(simd, &varyings.normal, at);
-        let position = Vec3x8::load(simd, &varyings.position, at);
-        let viewer = light::towards_viewer(simd, varyings, lighting, at);
-        let ambient = match surface.ambient {
-            Some(color) => Vec3x8::splat(simd, color),
-            None => Vec3x8::load(simd, diffuse, at),
-        };
-        let mut sum = Vec3x8::load(simd, out, at) + ambient * Vec3x8::splat(simd, lighting.ambient);
-        for source in &lighting.lights {
-            let visibility = always(
-                #[inline(always)]
-                || match source.shadow {
-                    Some(map) if surface.receives_shadow => {
-                        lighting.maps[map].visibility(simd, &varyings.shadow[map], at)
-                    }
-                    _ => f32x8::splat(simd, 1.0),
-                },
-            );
-            light::add_light(simd, source, visibility, normal, viewer, position, &reflectance, at, &mut sum);
+    let reflectance = Reflectance { ambient: surface.ambient, diffuse, specular };
+    light::add_ambient(level, lighting.ambient, &reflectance, count, out);
+    for source in &lighting.lights {
+        let facing = light::facing(level, source, varyings, count);
+        if facing == 0 {
+            continue;
         }
-        sum.store(out, at);
+        match source.shadow {
+            Some(map) if surface.receives_shadow => {
+                lighting.maps[map].visibility(level, &varyings.shadow[map], facing, visibility);
+            }
+            _ => *visibility = [1.0; BLOCK],
+        }
+        light::add_light(level, source, visibility, varyings, lighting, &reflectance, count, out);
     }
 }
 

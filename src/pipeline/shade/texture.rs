@@ -18,8 +18,18 @@ static UNORM_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
 });
 
 /// Samples `texture` at a block's texture coordinates: red, green, blue, alpha, in linear light.
+pub fn sample(
+    level: Level,
+    texture: &Texture,
+    varyings: &Varyings,
+    count: usize,
+    out: &mut [[f32; BLOCK]; 4],
+) {
+    dispatch!(level, simd => sample_kernel(simd, texture, varyings, count, out));
+}
+
 #[inline(always)]
-pub fn sample<S: Simd>(
+fn sample_kernel<S: Simd>(
     simd: S,
     texture: &Texture,
     varyings: &Varyings,

@@ -69,13 +69,30 @@ fn render_map(pass: &ShadowPass, work: &Work) -> Result<ShadowMap, Cancelled> {
 }
 
 impl ShadowMap {
-    /// 1 where the light reaches eight receivers, 0 where a caster lies before them.
+    /// 1 where the light reaches the receivers of a block, 0 where a caster lies before them; only those
+    /// whose bit is set in `asked` need an answer.
     ///
     /// `coordinates` are texel x and y from the map's centre, and depth, as [`ShadowFrame`] makes
     /// them. Outside the map no caster is, and what lies nearer to the light than all of them is lit
     /// as well.
+    pub fn visibility(
+        &self,
+        level: Level,
+        coordinates: &[[f32; BLOCK]; 3],
+        asked: u64,
+        out: &mut [f32; BLOCK],
+    ) {
+        dispatch!(level, simd => {
+            for at in (0..BLOCK).step_by(LANES) {
+                if asked >> at & 0xff != 0 {
+                    self.visibility_of_eight(simd, coordinates, at).store_slice(&mut out[at..at + LANES]);
+                }
+            }
+        });
+    }
+
     #[inline(always)]
-    pub fn visibility<S: Simd>(&self, simd: S, coordinates: &[[f32; BLOCK]; 3], at: usize) -> f32x8<S> {
+    fn visibility_of_eight<S: Simd>(&self, simd: S, coordinates: &[[f32; BLOCK]; 3], at: usize) -> f32x8<S> {
         let side = float(self.resolution);
         let texel = always(
             #[inline(always)]

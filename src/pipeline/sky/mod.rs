@@ -56,8 +56,14 @@ impl Background {
     }
 
     /// Writes the colours of `pixels` (`y · side + x` within the tile) to their places.
+    pub fn draw(&self, level: Level, pixels: &[u32], region: &Region, side: usize, out: &mut [Vec<f32>; 3]) {
+        if !pixels.is_empty() {
+            dispatch!(level, simd => self.draw_kernel(simd, pixels, region, side, out));
+        }
+    }
+
     #[inline(always)]
-    pub fn draw<S: Simd>(
+    fn draw_kernel<S: Simd>(
         &self,
         simd: S,
         pixels: &[u32],

@@ -46,19 +46,27 @@ impl Visibility {
         self.id.resize(count, 0);
     }
 
-    /// One bit for each of eight pixels in a row from `pixel`: whether all its samples see the same.
+    /// One bit for each pixel of the row `y`, the first the lowest: whether all its samples see the same.
+    pub fn alone(&self, level: Level, y: usize, side: usize, samples: usize) -> u64 {
+        dispatch!(level, simd => self.alone_kernel(simd, y, side, samples))
+    }
+
     #[inline(always)]
-    pub fn alone<S: Simd>(&self, simd: S, pixel: usize, side: usize, samples: usize) -> u64 {
-        let of_sample = always(
-            #[inline(always)]
-            |s: usize| u32x8::from_slice(simd, &self.id[s * side * side + pixel..][..LANES]),
-        );
-        let first = of_sample(0);
-        let mut same = mask32x8::splat(simd, true);
-        for s in 1..samples {
-            same &= first.simd_eq(of_sample(s));
+    fn alone_kernel<S: Simd>(&self, simd: S, y: usize, side: usize, samples: usize) -> u64 {
+        let mut row = 0;
+        for left in (0..side).step_by(LANES) {
+            let of_sample = always(
+                #[inline(always)]
+                |s: usize| u32x8::from_slice(simd, &self.id[(s * side + y) * side + left..][..LANES]),
+            );
+            let first = of_sample(0);
+            let mut same = mask32x8::splat(simd, true);
+            for s in 1..samples {
+                same &= first.simd_eq(of_sample(s));
+            }
+            row |= same.to_bitmask() << left;
         }
-        same.to_bitmask()
+        row
     }
 }
 

@@ -72,11 +72,10 @@ pub struct SampleOrder<'a> {
 
 impl Fragments {
     /// Reads a tile's samples.
-    #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "the whole of a tile, and the kernels' instruction set")]
-    pub fn collect<S: Simd>(
+    pub fn collect(
         &mut self,
-        simd: S,
+        level: Level,
         samples: &Visibility,
         region: &Region,
         side: usize,
@@ -87,22 +86,20 @@ impl Fragments {
         self.clear();
         self.targets = side * side;
         for y in 0..region.size[1] {
-            for left in (0..region.size[0]).step_by(LANES) {
-                let alone = samples.alone(simd, y * side + left, side, order.pattern.len());
-                for x in left..region.size[0].min(left + LANES) {
-                    let pixel = y * side + x;
-                    let [number, right, down] =
-                        [pixel, x * 256, y * 256].map(|n| i32::try_from(n).expect("a tile is small"));
-                    let corner = [region.origin[0] + right, region.origin[1] + down];
-                    let id = samples.id[pixel];
-                    if alone >> (x - left) & 1 == 0 {
-                        self.share(samples, number.cast_unsigned(), side, corner, order, list, bins);
-                    } else if id == 0 {
-                        self.sky.push(number.cast_unsigned());
-                    } else {
-                        let (x, y) = (corner[0] + 128, corner[1] + 128);
-                        self.unsorted.push(Unsorted { id, target: number.cast_unsigned(), x, y });
-                    }
+            let alone = samples.alone(level, y, side, order.pattern.len());
+            for x in 0..region.size[0] {
+                let pixel = y * side + x;
+                let [number, right, down] =
+                    [pixel, x * 256, y * 256].map(|n| i32::try_from(n).expect("a tile is small"));
+                let corner = [region.origin[0] + right, region.origin[1] + down];
+                let id = samples.id[pixel];
+                if alone >> x & 1 == 0 {
+                    self.share(samples, number.cast_unsigned(), side, corner, order, list, bins);
+                } else if id == 0 {
+                    self.sky.push(number.cast_unsigned());
+                } else {
+                    let (x, y) = (corner[0] + 128, corner[1] + 128);
+                    self.unsorted.push(Unsorted { id, target: number.cast_unsigned(), x, y });
                 }
             }
         }

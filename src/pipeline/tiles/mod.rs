@@ -108,8 +108,7 @@ pub struct Shared<'a> {
 
 impl Scratch {
     /// Lists the tile's triangles in submission order and finds what each sample sees.
-    #[inline(always)]
-    pub fn find_visible<S: Simd>(&mut self, simd: S, bins: &Bins, place: [u32; 2], samples: u32) {
+    pub fn find_visible(&mut self, level: Level, bins: &Bins, place: [u32; 2], samples: u32) {
         let grid = &bins.grid;
         self.list.clear();
         for (number, chunk) in (0..).zip(&bins.chunks) {
@@ -120,11 +119,13 @@ impl Scratch {
         self.samples.clear(side, pattern.len());
         self.blocks.clear(side);
         let region = Region::of_tile(grid, place[0], place[1]);
-        for (&entry, id) in self.list.iter().zip(1..) {
-            let t = triangle(entry, bins).1;
-            let mut target = IdTarget { samples: &mut self.samples, id };
-            cover::cover(simd, t, &region, side, pattern, &mut self.blocks, &mut target);
-        }
+        let triangles = self.list.iter().zip(1..).map(|(&entry, id)| (triangle(entry, bins).1, id));
+        dispatch!(level, simd => {
+            for (t, id) in triangles {
+                let mut target = IdTarget { samples: &mut self.samples, id };
+                cover::cover(simd, t, &region, side, pattern, &mut self.blocks, &mut target);
+            }
+        });
     }
 
     /// What each sample of the tile sees, as [`Scratch::find_visible`] left it.
@@ -155,19 +156,15 @@ pub fn draw(shared: &Shared, pixels: &mut [[u8; 4]], work: &Work) -> Result<Tile
     let nearest = samples::nearest_to_centre(shared.samples);
     let order = SampleOrder { pattern: samples::pattern(shared.samples), nearest: &nearest };
     let tiles = split(pixels, &shared.bins.grid);
-    let times = work.map(
-        tiles,
-        Scratch::default,
-        |scratch, tile| dispatch!(work.level, simd => draw_tile(simd, shared, &order, scratch, tile)),
-    )?;
+    let times = work
+        .map(tiles, Scratch::default, |scratch, tile| draw_tile(work.level, shared, &order, scratch, tile))?;
     let mut total = TileTimes::default();
     times.iter().for_each(|t| total.add(t));
     Ok(total)
 }
 
-#[inline(always)]
-fn draw_tile<S: Simd>(
-    simd: S,
+fn draw_tile(
+    level: Level,
     shared: &Shared,
     order: &SampleOrder,
     scratch: &mut Scratch,
@@ -179,32 +176,31 @@ fn draw_tile<S: Simd>(
     let side = 1usize << grid.tile_shift;
     let region = Region::of_tile(grid, tile.place[0], tile.place[1]);
 
-    scratch.find_visible(simd, shared.bins, tile.place, shared.samples);
-    scratch.fragments.collect(simd, &scratch.samples, &region, side, order, &scratch.list, shared.bins);
+    scratch.find_visible(level, shared.bins, tile.place, shared.samples);
+    scratch.fragments.collect(level, &scratch.samples, &region, side, order, &scratch.list, shared.bins);
     times.raster = clock.lap();
 
     scratch.colors.iter_mut().for_each(|channel| {
         channel.clear();
         channel.resize(scratch.fragments.targets, 0.0);
     });
-    shade_fragments(simd, shared, scratch);
+    shade_fragments(level, shared, scratch);
     times.shaded = scratch.fragments.sorted.len() as u64;
     times.shade = clock.lap();
 
     scratch.sky.iter_mut().for_each(|channel| channel.resize(side * side, 0.0));
-    shared.background.draw(simd, &scratch.fragments.sky, &region, side, &mut scratch.sky);
+    shared.background.draw(level, &scratch.fragments.sky, &region, side, &mut scratch.sky);
     times.sky = clock.lap();
 
     let opaque = !shared.background.is_transparent();
     resolve::resolve(&scratch.fragments, &scratch.sky, shared.samples, side, &mut scratch.colors);
-    output::encode_tile(simd, &scratch.fragments, &scratch.colors, shared.samples, opaque, side, tile.rows);
+    output::encode_tile(level, &scratch.fragments, &scratch.colors, shared.samples, opaque, side, tile.rows);
     times.resolve = clock.lap();
     times
 }
 
 /// Shades every fragment of the tile, draw by draw.
-#[inline(always)]
-fn shade_fragments<S: Simd>(simd: S, shared: &Shared, scratch: &mut Scratch) {
+fn shade_fragments(level: Level, shared: &Shared, scratch: &mut Scratch) {
     let mut out = [[0.0; BLOCK]; 3];
     for run in &scratch.fragments.runs {
         let draw = &shared.draws[run.draw as usize];
@@ -217,19 +213,14 @@ fn shade_fragments<S: Simd>(simd: S, shared: &Shared, scratch: &mut Scratch) {
             records.push(&source, t, chunk);
         }
         for block in scratch.fragments.sorted[run.first[1]..run.end[1]].chunks(BLOCK) {
-            simd.vectorize(
-                #[inline(always)]
-                || {
-                    shade::shade_block(
-                        simd,
-                        block,
-                        &records,
-                        &source,
-                        &shared.lighting,
-                        &mut scratch.shade,
-                        &mut out,
-                    );
-                },
+            shade::shade_block(
+                level,
+                block,
+                &records,
+                &source,
+                &shared.lighting,
+                &mut scratch.shade,
+                &mut out,
             );
             for (i, fragment) in block.iter().enumerate() {
                 for (channel, value) in scratch.colors.iter_mut().zip(&out) {

@@ -4,7 +4,6 @@ use crate::draw::work;
 use crate::random::Random;
 use fearless_simd::Level;
 use glam::{DVec2, DVec3};
-use rasterd::math::simd::dispatch;
 use rasterd::pipeline::geometry::bin::TileGrid;
 use rasterd::pipeline::geometry::setup::Triangle;
 use rasterd::pipeline::geometry::{self, Bins};
@@ -87,7 +86,7 @@ pub fn look(
             let fragments: Vec<_> =
                 points.iter().map(|&[x, y]| Fragment { record: 0, target: 0, x, y }).collect();
             let mut varyings = Varyings::default();
-            dispatch!(Level::new(), simd => interpolate(simd, &records, &source, &fragments, &mut varyings));
+            interpolate(Level::new(), &records, &source, &fragments, &mut varyings);
             for (lane, &point) in points.iter().enumerate() {
                 check(t, point, lane, &varyings);
                 looked += 1;

@@ -6,7 +6,6 @@ use crate::measure::at_most;
 use crate::random::Random;
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
-use rasterd::math::simd::dispatch;
 use rasterd::pipeline::shade::Fragment;
 use rasterd::pipeline::shade::varyings::{Records, Source, Varyings, interpolate};
 use rasterd::plan::{FrameRequest, Plan, orthonormal_basis};
@@ -142,7 +141,7 @@ fn normals_that_cancel_give_way_to_the_geometric_one() {
     let centre =
         Fragment { record: 0, target: 0, x: t.x.iter().sum::<i32>() / 3, y: t.y.iter().sum::<i32>() / 3 };
     let mut varyings = Varyings::default();
-    dispatch!(Level::new(), simd => interpolate(simd, &records, &source, &[centre], &mut varyings));
+    interpolate(Level::new(), &records, &source, &[centre], &mut varyings);
     assert_eq!(Vec3::from_array(varyings.normal.map(|axis| axis[0])), Vec3::Z);
 }
 

@@ -136,19 +136,16 @@ fn worst_excess(item: &Item, view: &View, samples: u32) -> (f64, usize) {
     for tile in 0..bins.grid.tiles() {
         let place = [tile % bins.grid.columns, tile / bins.grid.columns];
         let region = Region::of_tile(&bins.grid, place[0], place[1]);
-        dispatch!(Level::new(), simd => scratch.find_visible(simd, &bins, place, samples));
-        dispatch!(Level::new(), simd => {
-            fragments.collect(simd, scratch.visibility(), &region, side, &order, scratch.list(), &bins);
-        });
+        scratch.find_visible(Level::new(), &bins, place, samples);
+        let level = Level::new();
+        fragments.collect(level, scratch.visibility(), &region, side, &order, scratch.list(), &bins);
         let mut records = Records::new(&source);
         let drawn = fragments.visible.iter().map(|&id| triangle(scratch.list()[id as usize - 1], &bins));
         let drawn: Vec<_> = drawn.collect();
         drawn.iter().for_each(|(chunk, t)| records.push(&source, t, chunk));
         for block in fragments.sorted.chunks(BLOCK) {
             let mut varyings = Varyings::default();
-            dispatch!(Level::new(), simd => {
-                varyings::interpolate(simd, &records, &source, block, &mut varyings);
-            });
+            varyings::interpolate(level, &records, &source, block, &mut varyings);
             for (i, fragment) in block.iter().enumerate() {
                 let corners = item.mesh.triangles[drawn[fragment.record as usize].1.source as usize];
                 let colors = item.mesh.colors.as_ref().expect("it has colours");

@@ -142,7 +142,7 @@ pub fn visible(bins: &Bins, samples: u32) -> Seen {
     let mut scratch = Scratch::default();
     let mut seen = Seen { id: vec![0; count(bins, samples)], depth: vec![0.0; count(bins, samples)] };
     for place in places(bins) {
-        dispatch!(Level::new(), simd => scratch.find_visible(simd, bins, place, samples));
+        scratch.find_visible(Level::new(), bins, place, samples);
         let tile = scratch.visibility();
         for_each_sample(bins, place, samples, |within, whole| {
             seen.depth[whole] = tile.depth[within];

@@ -4,7 +4,6 @@ use crate::draw::{file, png};
 use crate::measure::at_most;
 use fearless_simd::Level;
 use rasterd::limits::Limits;
-use rasterd::math::simd::dispatch;
 use rasterd::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
 use rasterd::pipeline::shade::texture::sample;
 use rasterd::pipeline::shade::{BLOCK, varyings::Varyings};
@@ -30,7 +29,7 @@ fn sampled(level: Level, texture: &Texture, u: f32, v: f32, step: f32) -> [f32; 
         ..Varyings::default()
     };
     let mut out = [[f32::NAN; BLOCK]; 4];
-    dispatch!(level, simd => sample(simd, texture, &varyings, 1, &mut out));
+    sample(level, texture, &varyings, 1, &mut out);
     out.map(|channel| channel[0])
 }
 

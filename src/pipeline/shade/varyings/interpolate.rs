@@ -94,15 +94,25 @@ impl Lanes<'_> {
 }
 
 /// Interpolates the attributes of up to [`BLOCK`] fragments of one draw.
-#[inline(always)]
-pub fn interpolate<S: Simd>(
-    simd: S,
+pub fn interpolate(
+    level: Level,
     records: &Records,
     source: &Source,
     fragments: &[Fragment],
     out: &mut Varyings,
 ) {
     out.shadow.resize(source.shadows.len(), [[0.0; BLOCK]; 3]);
+    dispatch!(level, simd => interpolate_kernel(simd, records, source, fragments, out));
+}
+
+#[inline(always)]
+fn interpolate_kernel<S: Simd>(
+    simd: S,
+    records: &Records,
+    source: &Source,
+    fragments: &[Fragment],
+    out: &mut Varyings,
+) {
     for (group, at) in fragments.chunks(LANES).zip((0..).step_by(LANES)) {
         let lane = always(
             #[inline(always)]

@@ -45,7 +45,7 @@ fn collect(triangles: Vec<Triangle>, samples: u32) -> (Bins, Visibility, Fragmen
     let nearest = samples::nearest_to_centre(samples);
     let order = SampleOrder { pattern: samples::pattern(samples), nearest: &nearest };
     let mut fragments = Fragments::default();
-    dispatch!(Level::new(), simd => fragments.collect(simd, &seen, &region, SIDE, &order, &list, &bins));
+    fragments.collect(Level::new(), &seen, &region, SIDE, &order, &list, &bins);
     (bins, seen, fragments)
 }
 
