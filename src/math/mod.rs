@@ -10,4 +10,4 @@ pub mod view;
 
 pub use bounds::Bounds;
 pub use rounding::round_to_f32;
-pub use view::{Projection, View};
+pub use view::{Projection, View, Viewport};

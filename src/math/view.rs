@@ -15,6 +15,38 @@ pub enum Projection {
     Orthographic,
 }
 
+/// The picture that clip space is mapped to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewport {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// The least depth drawn, that of the far plane; 0 where it is infinitely far.
+    pub farthest: f64,
+}
+
+impl Viewport {
+    /// Half the picture in sub-pixels: it reaches from minus this to this.
+    #[must_use]
+    pub fn half_extent(&self) -> [f64; 2] {
+        [self.width, self.height].map(|n| f64::from(n) * f64::from(SUBPIXELS / 2))
+    }
+
+    /// Screen x and y of the left and top border of pixel 0, in sub-pixels.
+    #[must_use]
+    pub fn origin(&self) -> [i32; 2] {
+        // A picture has at most 2¹⁴ pixels a side, so this stays below 2²¹.
+        [self.width, self.height].map(|n| -(n.cast_signed() * (SUBPIXELS / 2)))
+    }
+}
+
+impl From<&View> for Viewport {
+    fn from(view: &View) -> Self {
+        view.viewport()
+    }
+}
+
 /// A viewer in anchored space and its picture.
 ///
 /// View space is right-handed: x to the right, y up, and the view-space distance `w` grows along
@@ -75,17 +107,21 @@ impl View {
         }
     }
 
+    /// The picture that its clip space is mapped to.
+    #[must_use]
+    pub fn viewport(&self) -> Viewport {
+        let farthest = match self.projection {
+            // Rounded down, so that what lies at `far` to the bit is drawn.
+            Projection::Perspective => self.near / self.far * (1.0 - f64::EPSILON),
+            Projection::Orthographic => self.depth(self.far),
+        };
+        Viewport { width: self.width, height: self.height, farthest }
+    }
+
     /// Half the picture in sub-pixels: the viewport reaches from minus this to this.
     #[must_use]
     pub fn half_extent(&self) -> [f64; 2] {
-        [self.width, self.height].map(|n| f64::from(n) * f64::from(SUBPIXELS / 2))
-    }
-
-    /// Screen x or y of the left or top border of pixel 0, in sub-pixels.
-    #[must_use]
-    pub fn origin(&self) -> [i32; 2] {
-        // A picture has at most 2¹⁴ pixels a side, so this stays below 2²¹.
-        [self.width, self.height].map(|n| -(n.cast_signed() * (SUBPIXELS / 2)))
+        self.viewport().half_extent()
     }
 
     /// Direction of the line of sight through the screen point (x, y), in world axes. Its component

@@ -13,6 +13,7 @@ mod pick;
 mod resolve;
 pub mod samples;
 pub mod shade;
+pub mod shader;
 pub mod shadow;
 mod sky;
 mod stats;

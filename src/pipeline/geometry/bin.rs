@@ -2,7 +2,7 @@
 
 use super::Counts;
 use super::setup::Triangle;
-use crate::math::View;
+use crate::math::Viewport;
 
 /// How a picture is cut into square tiles. All coordinates in sub-pixels are relative to the
 /// viewport centre.
@@ -25,21 +25,22 @@ pub struct TileGrid {
 }
 
 impl TileGrid {
-    /// Cuts the picture of `view` into tiles of `2^tile_shift` pixels.
+    /// Cuts a picture into tiles of `2^tile_shift` pixels.
     #[must_use]
-    pub fn new(view: &View, tile_shift: u32, samples: &[[i32; 2]]) -> Self {
+    pub fn new(viewport: impl Into<Viewport>, tile_shift: u32, samples: &[[i32; 2]]) -> Self {
+        let viewport = viewport.into();
         let tiles = |n: u32| n.div_ceil(1 << tile_shift);
         let range = |axis: usize| {
             let of = |f: fn(i32, i32) -> i32| samples.iter().map(|s| s[axis]).reduce(f).unwrap_or(0);
             [of(i32::min), of(i32::max)]
         };
         Self {
-            width: view.width,
-            height: view.height,
+            width: viewport.width,
+            height: viewport.height,
             tile_shift,
-            columns: tiles(view.width),
-            rows: tiles(view.height),
-            origin: view.origin(),
+            columns: tiles(viewport.width),
+            rows: tiles(viewport.height),
+            origin: viewport.origin(),
             sample_box: [range(0), range(1)],
         }
     }

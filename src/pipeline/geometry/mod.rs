@@ -1,18 +1,22 @@
 //! Geometry: meshes in model space in, triangles in fixed-point screen space out, binned by tile.
 //!
-//! Every vertex is transformed once ([`vertex`]), triangles are culled, clipped ([`clip`]), snapped
+//! Every vertex is transformed once ([`mesh`], [`vertex`]), triangles are culled, clipped ([`clip`]), snapped
 //! and set up ([`setup`]), and listed by the tiles they touch ([`bin`]). The same code serves the
 //! camera and the lights.
 
 pub mod bin;
 pub mod clip;
+pub mod mesh;
 pub mod setup;
 pub mod vertex;
 
+use super::shader::VertexShader;
 use super::work::{Cancelled, Work};
-use crate::math::View;
-use crate::plan::Item;
+use crate::math::{View, Viewport};
+use crate::model::Part;
+use crate::plan::{Item, Slot};
 use bin::{Chunk, TileGrid};
+use mesh::MeshVertices;
 
 /// Triangles of one task: enough to hide the task's cost, few enough to share out.
 const CHUNK_TRIANGLES: usize = 4096;
@@ -61,18 +65,61 @@ pub struct Bins {
     pub counts: Counts,
 }
 
+impl Bins {
+    /// Lists the triangles that may touch the tile at (column, row), in submission order.
+    pub fn list(&self, place: [u32; 2], list: &mut Vec<(u32, u32)>) {
+        list.clear();
+        for (number, chunk) in (0..).zip(&self.chunks) {
+            list.extend(chunk.tile(place[0], place[1]).iter().map(|&index| (number, index)));
+        }
+    }
+}
+
 /// Transforms, culls, clips, snaps, sets up and bins the triangles of `items`.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn run(items: &[Item], view: &View, grid: TileGrid, work: &Work) -> Result<Bins, Cancelled> {
-    let vertices = vertex::transform(items, view, work)?;
-    let tasks = items.iter().enumerate().flat_map(|(i, item)| {
-        let count = item.mesh.triangles.len();
+    let vertices: Vec<MeshVertices> = items.iter().map(|item| MeshVertices::new(item, view)).collect();
+    let primitives = items.iter().zip(&vertices).map(|(item, vertices)| Primitives {
+        vertices,
+        vertex_count: item.mesh.vertex_count(),
+        triangles: &item.mesh.triangles,
+        parts: &item.mesh.parts,
+        slots: &item.slots,
+        mirrored: item.mirrored,
+    });
+    draw(&primitives.collect::<Vec<_>>(), &view.viewport(), grid, work)
+}
+
+/// Indexed triangles, and the vertex shader that places them.
+pub struct Primitives<'a> {
+    /// Where the vertices are.
+    pub vertices: &'a dyn VertexShader,
+    /// How many there are.
+    pub vertex_count: usize,
+    /// Three vertices each, counter-clockwise seen from the front.
+    pub triangles: &'a [[u32; 3]],
+    /// Runs of triangles by slot, ascending; the first begins at 0.
+    pub parts: &'a [Part],
+    /// What becomes of the triangles of each slot.
+    pub slots: &'a [Slot],
+    /// Whether fronts run clockwise.
+    pub mirrored: bool,
+}
+
+/// Runs vertex shaders, then culls, clips, snaps, sets up and bins their triangles.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn draw(all: &[Primitives], viewport: &Viewport, grid: TileGrid, work: &Work) -> Result<Bins, Cancelled> {
+    let vertices = vertex::transform(all, viewport, work)?;
+    let tasks = all.iter().enumerate().flat_map(|(i, primitives)| {
+        let count = primitives.triangles.len();
         (0..count).step_by(CHUNK_TRIANGLES).map(move |from| (i, from..count.min(from + CHUNK_TRIANGLES)))
     });
     let chunks = work.map(tasks.collect(), Vec::new, |pairs, (i, range)| {
-        setup::process(&items[i], range, &vertices[i], view, &grid, pairs)
+        setup::process(&all[i], range, &vertices[i], viewport, &grid, work.level, pairs)
     })?;
     let mut counts = Counts::default();
     chunks.iter().for_each(|chunk| counts.add(&chunk.counts));

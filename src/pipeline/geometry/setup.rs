@@ -1,10 +1,13 @@
 //! Triangle set-up: culling, snapping, orientation, and the depth plane.
 
+use super::Primitives;
 use super::bin::{Chunk, TileGrid};
 use super::clip::{ClipVertex, Polygon};
-use super::vertex::{GUARD, ScreenVertices, ViewFromModel, outcode};
-use crate::math::View;
-use crate::plan::{Item, Slot};
+use super::vertex::{GUARD, ScreenVertices, outcode};
+use crate::math::Viewport;
+use crate::math::simd::Level;
+use crate::pipeline::shader::ClipBlock;
+use crate::plan::Slot;
 use crate::scene::Cull;
 use std::ops::Range;
 
@@ -138,25 +141,25 @@ enum Fate {
     Degenerate,
 }
 
-/// Sets up the triangles `range` of `item` and bins them.
+/// Sets up the triangles `range` of `primitives` and bins them.
 pub fn process(
-    item: &Item,
+    primitives: &Primitives,
     range: Range<usize>,
     vertices: &ScreenVertices,
-    view: &View,
+    viewport: &Viewport,
     grid: &TileGrid,
+    level: Level,
     pairs: &mut Vec<(u32, u32)>,
 ) -> Chunk {
     let mut chunk = Chunk::default();
-    let from_model = ViewFromModel::new(item, view);
-    let parts = &item.mesh.parts;
+    let parts = primitives.parts;
     let mut part = parts.partition_point(|p| p.first_triangle as usize <= range.start) - 1;
     for source in range {
         while parts.get(part + 1).is_some_and(|next| next.first_triangle as usize <= source) {
             part += 1;
         }
-        let slot = item.slots[parts[part].slot as usize];
-        let corners = item.mesh.triangles[source];
+        let slot = primitives.slots[parts[part].slot as usize];
+        let corners = primitives.triangles[source];
         let codes = corners.map(|v| vertices.outcode[v as usize]);
         chunk.counts.triangles += 1;
         if codes[0] & codes[1] & codes[2] & outcode::OUTSIDE != 0 {
@@ -170,21 +173,20 @@ pub fn process(
                 let v = v as usize;
                 Snapped { x: vertices.x[v], y: vertices.y[v], depth: vertices.depth[v] }
             });
-            let fate = set_up(snapped, slot, source, NOT_CLIPPED, item.mirrored);
+            let fate = set_up(snapped, slot, source, NOT_CLIPPED, primitives.mirrored);
             record(fate, &mut chunk, grid, pairs);
         } else {
-            let polygon = Polygon::triangle(corners.map(|v| item.mesh.position(v)), &from_model, view);
-            let Some(polygon) = polygon else {
+            let positions = clip_positions(primitives, corners, level);
+            let Some(polygon) = Polygon::triangle(positions, viewport) else {
                 chunk.counts.degenerate += 1;
                 continue;
             };
             chunk.counts.clipped += 1;
             process_clipped(
-                &polygon.clipped(view),
+                &polygon.clipped(viewport),
                 slot,
                 source,
-                item.mirrored,
-                view,
+                primitives.mirrored,
                 &mut chunk,
                 grid,
                 pairs,
@@ -195,6 +197,16 @@ pub fn process(
     chunk
 }
 
+/// Where the corners of one triangle are, asked again: few are clipped, and keeping the positions of all
+/// vertices for them would cost the others memory.
+fn clip_positions(primitives: &Primitives, corners: [u32; 3], level: Level) -> [[f64; 4]; 3] {
+    let mut block = ClipBlock::default();
+    corners.map(|vertex| {
+        primitives.vertices.positions(level, vertex..vertex + 1, &mut block);
+        block.position(0)
+    })
+}
+
 /// Sets up the pieces of a cut triangle: a fan around the polygon's first corner.
 #[expect(clippy::too_many_arguments, reason = "one step of `process`, with its state")]
 fn process_clipped(
@@ -202,7 +214,6 @@ fn process_clipped(
     slot: Slot,
     source: u32,
     mirrored: bool,
-    view: &View,
     chunk: &mut Chunk,
     grid: &TileGrid,
     pairs: &mut Vec<(u32, u32)>,
@@ -210,9 +221,9 @@ fn process_clipped(
     // Where the near distance is a subnormal number, a later cut moves a corner off the guard plane
     // of an earlier one by more than its last place.
     let snap = |v: &ClipVertex| Snapped {
-        x: (v.x / v.q + 0.5).floor().clamp(-GUARD, GUARD),
-        y: (v.y / v.q + 0.5).floor().clamp(-GUARD, GUARD),
-        depth: view.depth(v.w),
+        x: (v.x / v.w + 0.5).floor().clamp(-GUARD, GUARD),
+        y: (v.y / v.w + 0.5).floor().clamp(-GUARD, GUARD),
+        depth: v.z / v.w,
     };
     let corners = polygon.corners();
     for i in 2..corners.len() {

@@ -1,13 +1,18 @@
-//! The vertex stage: model space to snapped screen space, in f64, each vertex once.
+//! The vertex stage: clip space to snapped screen space, in f64, each vertex once.
 
+use super::Primitives;
+use crate::math::Viewport;
 use crate::math::simd::*;
-use crate::math::{Projection, View};
+use crate::pipeline::shader::{ClipBlock, VERTEX_BLOCK};
 use crate::pipeline::work::{Cancelled, Work};
-use crate::plan::Item;
-use glam::{DMat3, DVec3};
+use std::ops::Range;
 
 /// The guard band in sub-pixels: the largest coordinate of a 24.8 number inside ±32,768 px.
 pub const GUARD: f64 = 8_388_607.0;
+
+/// Where triangles are cut: what lies within snaps to [`GUARD`] at most, and what lies there but for
+/// the rounding of its projection is left whole.
+pub const GUARD_PLANE: f64 = GUARD + 0.25;
 
 /// Where a vertex lies. A triangle whose vertices share one of the first six bits is invisible; one
 /// with any of [`outcode::CLIP`] must be cut.
@@ -46,60 +51,29 @@ pub struct ScreenVertices {
     pub outcode: Vec<u8>,
 }
 
-/// From a mesh's stored positions to view space: `linear · p + offset` is (x, y, w).
-#[derive(Clone, Copy, Debug)]
-pub struct ViewFromModel {
-    /// Linear part.
-    pub linear: DMat3,
-    /// View-space position of the stored zero.
-    pub offset: DVec3,
-}
-
-impl ViewFromModel {
-    /// Composes the item's placement with the view. The camera is subtracted before anything is
-    /// rotated, so a scene far from the origin loses nothing.
-    #[must_use]
-    pub fn new(item: &Item, view: &View) -> Self {
-        let view_from_world = view.view_from_world();
-        Self { linear: view_from_world * item.linear, offset: view_from_world * (item.origin - view.eye) }
-    }
-
-    /// View-space (x, y, w) of a stored position.
-    #[must_use]
-    pub fn apply(&self, p: DVec3) -> DVec3 {
-        let (a, b, c) = (self.linear.x_axis, self.linear.y_axis, self.linear.z_axis);
-        // The same order of sums as the kernel below: a clipped triangle meets its unclipped
-        // neighbour at the very same vertices.
-        let row = |i: usize| ((a[i] * p.x + b[i] * p.y) + c[i] * p.z) + self.offset[i];
-        DVec3::new(row(0), row(1), row(2))
-    }
-}
-
-/// Vertices of one task.
+/// Vertices of one task: a multiple of [`VERTEX_BLOCK`].
 const CHUNK_VERTICES: usize = 8192;
 
-/// Transforms the vertices of every item.
+/// Runs the vertex shaders of `all` and snaps what they give.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn transform(items: &[Item], view: &View, work: &Work) -> Result<Vec<ScreenVertices>, Cancelled> {
-    let tasks = items.iter().flat_map(|item| {
-        let from_model = ViewFromModel::new(item, view);
-        let count = item.mesh.vertex_count();
+pub fn transform(
+    all: &[Primitives],
+    viewport: &Viewport,
+    work: &Work,
+) -> Result<Vec<ScreenVertices>, Cancelled> {
+    let tasks = all.iter().flat_map(|primitives| {
+        let count = primitives.vertex_count;
         (0..count)
             .step_by(CHUNK_VERTICES)
-            .map(move |from| (item, from_model, from..count.min(from + CHUNK_VERTICES)))
+            .map(move |from| (primitives, from..count.min(from + CHUNK_VERTICES)))
     });
-    let parts = work.map(
-        tasks.collect(),
-        || (),
-        |(), (item, from_model, range)| {
-            let positions = [0, 1, 2].map(|axis| &item.mesh.positions[axis][range.clone()]);
-            dispatch!(work.level, simd => transform_kernel(simd, positions, &from_model, view))
-        },
-    )?;
+    let parts = work.map(tasks.collect(), ClipBlock::default, |block, (primitives, range)| {
+        transform_range(work.level, primitives, range, viewport, block)
+    })?;
     let mut parts = parts.into_iter();
-    Ok(items.iter().map(|item| join(&mut parts, item.mesh.vertex_count())).collect())
+    Ok(all.iter().map(|primitives| join(&mut parts, primitives.vertex_count)).collect())
 }
 
 /// Joins the parts of one item; most meshes are a single part.
@@ -115,93 +89,76 @@ fn join(parts: &mut impl Iterator<Item = ScreenVertices>, count: usize) -> Scree
     all
 }
 
-#[inline(always)]
-fn transform_kernel<S: Simd>(
-    simd: S,
-    positions: [&[f64]; 3],
-    from_model: &ViewFromModel,
-    view: &View,
+fn transform_range(
+    level: Level,
+    primitives: &Primitives,
+    range: Range<usize>,
+    viewport: &Viewport,
+    block: &mut ClipBlock,
 ) -> ScreenVertices {
-    let count = positions[0].len();
-    let padded = count.next_multiple_of(LANES);
+    let padded = range.len().next_multiple_of(LANES);
     let mut out = ScreenVertices {
         x: vec![0.0; padded],
         y: vec![0.0; padded],
         depth: vec![0.0; padded],
         outcode: vec![0; padded],
     };
-    let mut tail = [[0.0; LANES]; 3];
-    for at in (0..count).step_by(LANES) {
-        let p = if at + LANES <= count {
-            let load = always(
-                #[inline(always)]
-                |axis: usize| f64x8::from_slice(simd, &positions[axis][at..at + LANES]),
-            );
-            [load(0), load(1), load(2)]
-        } else {
-            for axis in 0..3 {
-                tail[axis][..count - at].copy_from_slice(&positions[axis][at..]);
-            }
-            [
-                f64x8::simd_from(simd, tail[0]),
-                f64x8::simd_from(simd, tail[1]),
-                f64x8::simd_from(simd, tail[2]),
-            ]
-        };
-        transform_eight(simd, p, from_model, view, &mut out, at);
+    let number = |vertex: usize| u32::try_from(vertex).expect("a mesh has fewer than 2³² vertices");
+    for from in range.clone().step_by(VERTEX_BLOCK) {
+        let to = range.end.min(from + VERTEX_BLOCK);
+        primitives.vertices.positions(level, number(from)..number(to), block);
+        let first = from - range.start;
+        dispatch!(level, simd => snap_block(simd, block, to - from, viewport, &mut out, first));
     }
-    out.x.truncate(count);
-    out.y.truncate(count);
-    out.depth.truncate(count);
-    out.outcode.truncate(count);
+    out.x.truncate(range.len());
+    out.y.truncate(range.len());
+    out.depth.truncate(range.len());
+    out.outcode.truncate(range.len());
     out
 }
 
+/// Divides, maps to the viewport and snaps `count` positions, to index `first` and on.
 #[inline(always)]
-fn transform_eight<S: Simd>(
+fn snap_block<S: Simd>(
     simd: S,
-    p: [f64x8<S>; 3],
-    from_model: &ViewFromModel,
-    view: &View,
+    block: &ClipBlock,
+    count: usize,
+    viewport: &Viewport,
     out: &mut ScreenVertices,
-    at: usize,
+    first: usize,
 ) {
-    let (a, b, c) = (from_model.linear.x_axis, from_model.linear.y_axis, from_model.linear.z_axis);
-    let row = always(
-        #[inline(always)]
-        |i: usize| ((p[0] * a[i] + p[1] * b[i]) + p[2] * c[i]) + from_model.offset[i],
-    );
-    let (view_x, view_y, w) = (row(0), row(1), row(2));
-    let zero = f64x8::splat(simd, 0.0);
+    let [half_w, half_h] = viewport.half_extent();
+    for at in (0..count).step_by(LANES) {
+        let load = always(
+            #[inline(always)]
+            |component: &[f64; VERTEX_BLOCK]| f64x8::from_slice(simd, &component[at..at + LANES]),
+        );
+        let zero = f64x8::splat(simd, 0.0);
+        // Homogeneous screen position: (x, y) / w, in sub-pixels, y down.
+        let (x, y) = (load(&block.x) * half_w, zero - load(&block.y) * half_h);
+        let (z, w) = (load(&block.z), load(&block.w));
+        let to = first + at..first + at + LANES;
+        ((x / w + 0.5).floor()).store_slice(&mut out.x[to.clone()]);
+        ((y / w + 0.5).floor()).store_slice(&mut out.y[to.clone()]);
+        (z / w).store_slice(&mut out.depth[to.clone()]);
 
-    // Homogeneous screen position: (x, y) / q, in sub-pixels, y down.
-    let (x, y) = (view_x * view.scale[0], zero - view_y * view.scale[1]);
-    let one = f64x8::splat(simd, 1.0);
-    let (q, depth) = match view.projection {
-        Projection::Perspective => (w, f64x8::splat(simd, view.near) / w),
-        Projection::Orthographic => (one, one - (w - view.near) * view.depth_slope()),
-    };
-    ((x / q + 0.5).floor()).store_slice(&mut out.x[at..at + LANES]);
-    ((y / q + 0.5).floor()).store_slice(&mut out.y[at..at + LANES]);
-    depth.store_slice(&mut out.depth[at..at + LANES]);
-
-    let [half_w, half_h] = view.half_extent();
-    let (limit_x, limit_y, guard) = (q * half_w, q * half_h, q * GUARD);
-    let inside_guard = x.abs().simd_le(guard) & y.abs().simd_le(guard);
-    let codes = [
-        (x.simd_lt(zero - limit_x), outcode::LEFT),
-        (x.simd_gt(limit_x), outcode::RIGHT),
-        (y.simd_lt(zero - limit_y), outcode::ABOVE),
-        (y.simd_gt(limit_y), outcode::BELOW),
-        (w.simd_lt(f64x8::splat(simd, view.near)), outcode::NEAR),
-        (w.simd_gt(f64x8::splat(simd, view.far)), outcode::FAR),
-        (!inside_guard, outcode::GUARD),
-    ];
-    for (mask, bit) in codes {
-        let mask = mask.to_bitmask();
-        // Most vertices have no bit at all.
-        for lane in 0..if mask == 0 { 0 } else { LANES } {
-            out.outcode[at + lane] |= if mask >> lane & 1 == 1 { bit } else { 0 };
+        let (limit_x, limit_y, guard) = (w * half_w, w * half_h, w * GUARD_PLANE);
+        let inside_guard = x.abs().simd_le(guard) & y.abs().simd_le(guard);
+        let codes = [
+            (x.simd_lt(zero - limit_x), outcode::LEFT),
+            (x.simd_gt(limit_x), outcode::RIGHT),
+            (y.simd_lt(zero - limit_y), outcode::ABOVE),
+            (y.simd_gt(limit_y), outcode::BELOW),
+            (z.simd_gt(w), outcode::NEAR),
+            (z.simd_lt(w * viewport.farthest), outcode::FAR),
+            (!inside_guard, outcode::GUARD),
+        ];
+        for (mask, bit) in codes {
+            let mask = mask.to_bitmask();
+            // Most vertices have no bit at all.
+            for lane in 0..if mask == 0 { 0 } else { LANES } {
+                out.outcode[to.start + lane] |= if mask >> lane & 1 == 1 { bit } else { 0 };
+            }
         }
     }
 }

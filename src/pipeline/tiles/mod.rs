@@ -110,10 +110,7 @@ impl Scratch {
     /// Lists the tile's triangles in submission order and finds what each sample sees.
     pub fn find_visible(&mut self, level: Level, bins: &Bins, place: [u32; 2], samples: u32) {
         let grid = &bins.grid;
-        self.list.clear();
-        for (number, chunk) in (0..).zip(&bins.chunks) {
-            self.list.extend(chunk.tile(place[0], place[1]).iter().map(|&index| (number, index)));
-        }
+        bins.list(place, &mut self.list);
         let side = 1 << grid.tile_shift;
         let pattern = samples::pattern(samples);
         self.samples.clear(side, pattern.len());

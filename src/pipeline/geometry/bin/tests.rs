@@ -1,23 +1,10 @@
 use super::*;
-use crate::math::Projection;
 use crate::pipeline::samples;
-use glam::DVec3;
 use proptest::prelude::*;
 
 fn grid(size: [u32; 2], tile_shift: u32, samples: u32) -> TileGrid {
-    let view = View {
-        eye: DVec3::ZERO,
-        right: DVec3::X,
-        up: DVec3::Y,
-        forward: DVec3::NEG_Z,
-        projection: Projection::Orthographic,
-        scale: [256.0; 2],
-        near: 1.0,
-        far: 2.0,
-        width: size[0],
-        height: size[1],
-    };
-    TileGrid::new(&view, tile_shift, samples::pattern(samples))
+    let viewport = Viewport { width: size[0], height: size[1], farthest: 0.0 };
+    TileGrid::new(viewport, tile_shift, samples::pattern(samples))
 }
 
 fn triangle() -> impl Strategy<Value = [[i32; 2]; 3]> {

@@ -1,29 +1,21 @@
 use super::*;
-use glam::DMat3;
+use glam::DVec3;
 use proptest::prelude::*;
 
-fn view(far: f64) -> View {
-    View {
-        eye: DVec3::ZERO,
-        right: DVec3::X,
-        up: DVec3::Y,
-        forward: DVec3::NEG_Z,
-        projection: Projection::Perspective,
-        scale: [20_000.0; 2],
-        near: 0.5,
-        far,
-        width: 128,
-        height: 128,
-    }
+const NEAR: f64 = 0.5;
+
+fn viewport(far: f64) -> Viewport {
+    Viewport { width: 128, height: 128, farthest: NEAR / far * (1.0 - f64::EPSILON) }
 }
 
-/// The identity: a position is (x, y, w).
-fn as_it_is() -> ViewFromModel {
-    ViewFromModel { linear: DMat3::IDENTITY, offset: DVec3::ZERO }
+/// 20,000 sub-pixels per unit of x / w: a perspective view of (x, y, w).
+fn project(p: DVec3) -> [f64; 4] {
+    let focal = 20_000.0 / (128.0 * 128.0);
+    [p.x * focal, p.y * focal, NEAR, p.z]
 }
 
-fn polygon(corners: [DVec3; 3], view: &View) -> Polygon {
-    Polygon::triangle(corners, &as_it_is(), view).expect("all coordinates are finite")
+fn polygon(corners: [DVec3; 3], viewport: &Viewport) -> Polygon {
+    Polygon::triangle(corners.map(project), viewport).expect("all coordinates are finite")
 }
 
 /// Points on all sides of all planes, most of them not far from one.
@@ -35,22 +27,24 @@ fn point() -> impl Strategy<Value = DVec3> {
 
 /// Everything about a corner but its weights, bit by bit.
 fn bits(v: &ClipVertex) -> [u64; 4] {
-    [v.x, v.y, v.q, v.w].map(f64::to_bits)
+    [v.x, v.y, v.z, v.w].map(f64::to_bits)
 }
 
 #[test]
 fn a_triangle_inside_all_planes_is_left_as_it_is() {
-    let view = view(3.0);
-    let triangle =
-        polygon([DVec3::new(0.0, 0.0, 0.5), DVec3::new(1.0, 2.0, 3.0), DVec3::new(-1.0, 0.0, 1.0)], &view);
-    assert_eq!(triangle.clipped(&view).corners(), triangle.corners());
+    let viewport = viewport(3.0);
+    let triangle = polygon(
+        [DVec3::new(0.0, 0.0, 0.5), DVec3::new(1.0, 2.0, 3.0), DVec3::new(-1.0, 0.0, 1.0)],
+        &viewport,
+    );
+    assert_eq!(triangle.clipped(&viewport).corners(), triangle.corners());
 }
 
 #[test]
 fn a_coordinate_that_is_not_finite_makes_no_polygon() {
     for bad in [f64::NAN, f64::INFINITY, -1e305] {
         let corners = [DVec3::new(bad, 0.0, 1.0), DVec3::ONE, DVec3::Z];
-        assert!(Polygon::triangle(corners, &as_it_is(), &view(3.0)).is_none());
+        assert!(Polygon::triangle(corners.map(project), &viewport(3.0)).is_none());
     }
 }
 
@@ -61,9 +55,9 @@ proptest! {
     fn neighbours_cut_a_shared_edge_at_the_same_bits(
         a in point(), b in point(), c in point(), d in point(), bounded in any::<bool>()
     ) {
-        let view = view(if bounded { 3.0 } else { f64::INFINITY });
+        let viewport = viewport(if bounded { 3.0 } else { f64::INFINITY });
         let on_edge = |corners: [DVec3; 3], opposite: usize| {
-            let clipped = polygon(corners, &view).clipped(&view);
+            let clipped = polygon(corners, &viewport).clipped(&viewport);
             let mut on: Vec<_> = clipped
                 .corners()
                 .iter()
@@ -82,11 +76,11 @@ proptest! {
     /// and each corner is the weighted mean of the triangle's.
     #[test]
     fn what_is_left_lies_inside_and_on_the_triangle(a in point(), b in point(), c in point()) {
-        let view = view(3.0);
-        let clipped = polygon([a, b, c], &view).clipped(&view);
+        let viewport = viewport(3.0);
+        let clipped = polygon([a, b, c], &viewport).clipped(&viewport);
         for v in clipped.corners() {
-            prop_assert!(v.w >= view.near && v.w <= view.far * (1.0 + 1e-15), "{v:?}");
-            let guard = GUARD * v.q * (1.0 + 1e-12);
+            prop_assert!(v.w >= NEAR && v.w <= 3.0 * (1.0 + 1e-15), "{v:?}");
+            let guard = GUARD_PLANE * v.w * (1.0 + 1e-12);
             prop_assert!(v.x.abs() <= guard && v.y.abs() <= guard, "{v:?}");
             let [i, j, k] = v.weights;
             prop_assert!((i + j + k - 1.0).abs() < 1e-14, "{v:?}");
