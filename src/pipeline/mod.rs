@@ -7,9 +7,11 @@
 //! All of it runs on the threads of a [`Work`], and gives the same bytes for any number of them and
 //! any SIMD level.
 
+pub mod draw;
 pub mod geometry;
 mod output;
 mod pick;
+pub mod program;
 mod resolve;
 pub mod samples;
 pub mod shade;

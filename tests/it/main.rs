@@ -5,6 +5,7 @@ mod client;
 mod closed_form;
 mod command;
 mod draw;
+mod draws;
 mod errors;
 mod files;
 mod frames;
