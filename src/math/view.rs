@@ -77,6 +77,12 @@ pub struct View {
 }
 
 impl View {
+    /// Pixels of the picture.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
     /// Rows: right, up, forward. Takes a direction to (x, y, w).
     #[must_use]
     pub fn view_from_world(&self) -> DMat3 {

@@ -1,7 +1,7 @@
 //! The rasterizing pipeline: a plan in, pixels out.
 //!
 //! ```text
-//! shadow ─ geometry ─ tiles (cover ─ shade ─ sky ─ resolve) ─ output
+//! shadow ─ geometry ─ tiles (cover ─ shade ─ sky ─ resolve ─ output)
 //! ```
 //!
 //! All of it runs on the threads of a [`Work`], and gives the same bytes for any number of them and
@@ -45,7 +45,7 @@ pub fn render(plan: &Plan, work: &Work) -> Result<Frame, Cancelled> {
         timed(&mut timings, "shadow", !plan.shadows.is_empty(), || shadow::render_maps(&plan.shadows, work))?;
     let bins = timed(&mut timings, "geometry", true, || transform_clip_and_bin(plan, work))?;
     match plan.output {
-        Output::Color | Output::Normal | Output::Albedo => {
+        Output::Color | Output::Normal | Output::Albedo | Output::Radiance => {
             draw_colors(plan, &bins, &shadow_maps, timings, work)
         }
         Output::Depth | Output::Instance => draw_values(plan, &bins, timings, work),
@@ -58,7 +58,7 @@ fn transform_clip_and_bin(plan: &Plan, work: &Work) -> Result<Bins, Cancelled> {
     geometry::run(&plan.items, &plan.view, grid, work)
 }
 
-/// Draws a picture of colours: per tile cover → shade → sky → resolve → encode.
+/// Draws a picture of colours: per tile cover → shade → sky → resolve → write.
 fn draw_colors(
     plan: &Plan,
     bins: &Bins,
@@ -82,18 +82,48 @@ fn draw_colors(
         background: sky::Background::new(&plan.background, &plan.view),
         samples: plan.samples,
     };
-    let mut pixels = vec![[0; 4]; plan.view.width as usize * plan.view.height as usize];
     let began = Instant::now();
-    let times = tiles::draw(&shared, &mut pixels, work)?;
+    let (pixels, times) = match plan.output {
+        Output::Radiance => draw_radiance(plan, &shared, work)?,
+        _ => draw_bytes(plan, &shared, work)?,
+    };
     timings.push_tiles(milliseconds(began), &times);
-    let opaque = !shared.background.is_transparent();
-    let pixels = Pixels::Rgba8 { pixels, opaque };
     Ok(Frame::new(plan, pixels, Stats::new(bins, times.shaded, maps.len()), timings))
+}
+
+/// Tiles that end in bytes.
+fn draw_bytes(
+    plan: &Plan,
+    shared: &tiles::Shared,
+    work: &Work,
+) -> Result<(Pixels, stats::TileTimes), Cancelled> {
+    let mut pixels = vec![[0; 4]; plan.view.pixels()];
+    let tiles = tiles::split(&mut pixels, &shared.bins.grid);
+    let write = |resolved: &tiles::Resolved, tile: tiles::Tile<_>| {
+        output::encode_tile(work.level, resolved, tile.rows);
+    };
+    let times = tiles::draw(shared, tiles, write, work)?;
+    Ok((Pixels::Rgba8 { pixels, opaque: !shared.background.is_transparent() }, times))
+}
+
+/// Tiles that end in linear colour.
+fn draw_radiance(
+    plan: &Plan,
+    shared: &tiles::Shared,
+    work: &Work,
+) -> Result<(Pixels, stats::TileTimes), Cancelled> {
+    let mut pixels = vec![[0.0; 4]; plan.view.pixels()];
+    let tiles = tiles::split(&mut pixels, &shared.bins.grid);
+    let write = |resolved: &tiles::Resolved, tile: tiles::Tile<_>| {
+        output::write_radiance(work.level, resolved, tile.rows);
+    };
+    let times = tiles::draw(shared, tiles, write, work)?;
+    Ok((Pixels::Rgba32F { pixels, opaque: !shared.background.is_transparent() }, times))
 }
 
 /// Draws a picture of 16-bit values: distances or instances, straight from what each pixel sees.
 fn draw_values(plan: &Plan, bins: &Bins, mut timings: Timings, work: &Work) -> Result<Frame, Cancelled> {
-    let mut pixels = vec![0; plan.view.width as usize * plan.view.height as usize];
+    let mut pixels = vec![0; plan.view.pixels()];
     let began = Instant::now();
     output::draw_values(plan, bins, &mut pixels, work)?;
     timings.push("raster", milliseconds(began));

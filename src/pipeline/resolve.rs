@@ -35,6 +35,25 @@ pub fn resolve(
     }
 }
 
+/// Share of each pixel's samples that a surface covers.
+pub fn coverage(fragments: &Fragments, samples: u32, side: usize) -> Vec<f32> {
+    let mut coverage = vec![1.0; side * side];
+    for &pixel in &fragments.sky {
+        coverage[pixel as usize] = 0.0;
+    }
+    for shared in &fragments.shared {
+        let masks = &fragments.masks[shared.first as usize..(shared.first + shared.count) as usize];
+        let covered: u32 = masks.iter().map(|mask| mask.count_ones()).sum();
+        coverage[shared.pixel as usize] = small(covered) / small(samples);
+    }
+    coverage
+}
+
+#[expect(clippy::cast_precision_loss, reason = "at most 16")]
+fn small(n: u32) -> f32 {
+    n as f32
+}
+
 /// Plain mean of 2ᵐ values, summed as a pairwise tree: exact if all are equal, so that a pixel with one
 /// surface can go without.
 fn mean(values: &mut [f32]) -> f32 {

@@ -21,13 +21,20 @@ pub struct Frame {
 }
 
 /// Pixels of a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
     /// sRGB-encoded red, green, blue, and straight alpha.
     Rgba8 {
         /// The pixels.
         pixels: Vec<[u8; 4]>,
         /// Whether every alpha is 255.
+        opaque: bool,
+    },
+    /// Linear red, green, blue, straight, each in 0–65504, and alpha.
+    Rgba32F {
+        /// The pixels.
+        pixels: Vec<[f32; 4]>,
+        /// Whether every alpha is 1.
         opaque: bool,
     },
     /// Plain numbers.

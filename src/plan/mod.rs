@@ -99,24 +99,24 @@ impl Plan {
         let camera = camera(scene, request, width, height)?;
         let bounds = scene.bounds(t);
         let view = view::of_camera(&camera, bounds, width, height);
-        let is_color = request.output == Output::Color;
+        let is_shaded = request.output.is_shaded();
         let shading = request.shading.or(scene.render.shading);
         let mut plan = Self {
             scene: scene.clone(),
             t,
             output: request.output,
             view,
-            samples: if is_color { request.samples.unwrap_or(scene.render.samples) } else { 1 },
+            samples: if is_shaded { request.samples.unwrap_or(scene.render.samples) } else { 1 },
             items: Vec::new(),
             draws: Vec::new(),
             ambient: scene.ambient,
             lights: Vec::new(),
             shadows: Vec::new(),
-            background: if is_color { background } else { Background::Color(Vec3::ZERO) },
+            background: if is_shaded { background } else { Background::Color(Vec3::ZERO) },
             depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
             bytes: 0,
         };
-        plan.charge(u64::from(width) * u64::from(height) * 4, limits)?;
+        plan.charge(u64::from(width) * u64::from(height) * request.output.pixel_bytes(), limits)?;
         plan.add_instances(shading, limits)?;
         if plan.draws.iter().any(|draw| draw.surface.lit) {
             plan.add_lights(limits)?;

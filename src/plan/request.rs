@@ -102,4 +102,25 @@ pub enum Output {
     Albedo,
     /// 16-bit grey: which instance.
     Instance,
+    /// The shaded picture in linear light, before `post`, in 32-bit floats: what the float file formats
+    /// hold. No query names it.
+    Radiance,
+}
+
+impl Output {
+    /// Whether it shows the scene as it is lit, with samples and background.
+    #[must_use]
+    pub fn is_shaded(self) -> bool {
+        matches!(self, Self::Color | Self::Radiance)
+    }
+
+    /// Bytes of a finished pixel.
+    #[must_use]
+    pub fn pixel_bytes(self) -> u64 {
+        match self {
+            Self::Color | Self::Normal | Self::Albedo => 4,
+            Self::Depth | Self::Instance => 2,
+            Self::Radiance => 16,
+        }
+    }
 }

@@ -17,14 +17,14 @@ pub fn settle(
     output: Output,
 ) -> Surface {
     let shading = match output {
-        Output::Color => shading.unwrap_or(material.shading),
+        Output::Color | Output::Radiance => shading.unwrap_or(material.shading),
         Output::Normal => Shading::Normal,
         // The diffuse colour alone; what depth and instances show needs no colour at all.
         Output::Albedo | Output::Depth | Output::Instance => Shading::Unlit,
     };
     let lit = matches!(shading, Shading::BlinnPhong | Shading::Lambert);
     let colored = lit || shading == Shading::Unlit;
-    let emissive = if colored && output == Output::Color { material.emissive } else { Vec3::ZERO };
+    let emissive = if colored && output.is_shaded() { material.emissive } else { Vec3::ZERO };
     let map = |map: &Option<Arc<Texture>>, needed: bool| map.clone().filter(|_| needed);
     let specular = (shading == Shading::BlinnPhong && material.specular != Vec3::ZERO).then(|| Specular {
         color: material.specular,

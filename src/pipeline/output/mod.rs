@@ -1,102 +1,16 @@
-//! Output: linear colour to bytes, and what the data outputs show.
+//! Output: linear colour to bytes or floats, and what the data outputs show.
+
+mod colors;
+
+pub use colors::{encode_tile, write_radiance};
 
 use super::geometry::Bins;
 use super::geometry::setup::Triangle;
 use super::tiles::cover::Region;
-use super::tiles::fragments::Fragments;
 use super::tiles::{self, Scratch};
 use super::work::{Cancelled, Work};
-use crate::math::simd::*;
-use crate::math::{View, approx};
+use crate::math::View;
 use crate::plan::{Draw, Plan};
-
-/// Encodes a tile's colours: clamp to 0–1, sRGB, `floor(255 x + ½)`. Alpha is the coverage where the
-/// background is transparent, 255 else; colours are straight.
-pub fn encode_tile(
-    level: Level,
-    fragments: &Fragments,
-    colors: &[Vec<f32>; 3],
-    samples: u32,
-    opaque: bool,
-    side: usize,
-    rows: Vec<&mut [[u8; 4]]>,
-) {
-    let coverage = if opaque { Vec::new() } else { coverage_of(fragments, samples, side) };
-    dispatch!(level, simd => encode_kernel(simd, colors, &coverage, opaque, side, rows));
-}
-
-#[inline(always)]
-fn encode_kernel<S: Simd>(
-    simd: S,
-    colors: &[Vec<f32>; 3],
-    coverage: &[f32],
-    opaque: bool,
-    side: usize,
-    rows: Vec<&mut [[u8; 4]]>,
-) {
-    for (y, row) in rows.into_iter().enumerate() {
-        for (x, pixels) in (0..).step_by(LANES).zip(row.chunks_mut(LANES)) {
-            let at = y * side + x;
-            let codes = always(
-                #[inline(always)]
-                |c: usize| {
-                    let linear = f32x8::from_slice(simd, &colors[c][at..at + LANES]);
-                    let straight = if opaque {
-                        linear
-                    } else {
-                        linear / f32x8::from_slice(simd, &coverage[at..at + LANES])
-                    };
-                    srgb_codes(simd, straight)
-                },
-            );
-            let codes = [codes(0), codes(1), codes(2)];
-            for (lane, pixel) in pixels.iter_mut().enumerate() {
-                let alpha = if opaque { 255 } else { alpha_code(coverage[at + lane]) };
-                *pixel = [byte(codes[0][lane]), byte(codes[1][lane]), byte(codes[2][lane]), alpha];
-            }
-        }
-    }
-}
-
-/// sRGB codes of eight linear values; what is no number is 0.
-#[inline(always)]
-fn srgb_codes<S: Simd>(simd: S, linear: f32x8<S>) -> [i32; LANES] {
-    let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-    let clamped = min(max(linear, zero), one);
-    let codes: i32x8<S> = (approx::srgb_from_linear(clamped) * 255.0 + 0.5).floor().to_int_precise();
-    codes.to_array()
-}
-
-/// A code as a byte.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "codes are in 0–255")]
-fn byte(code: i32) -> u8 {
-    code as u8
-}
-
-/// Share of each pixel's samples that a surface covers.
-fn coverage_of(fragments: &Fragments, samples: u32, side: usize) -> Vec<f32> {
-    let mut coverage = vec![1.0; side * side];
-    for &pixel in &fragments.sky {
-        coverage[pixel as usize] = 0.0;
-    }
-    for shared in &fragments.shared {
-        let masks = &fragments.masks[shared.first as usize..(shared.first + shared.count) as usize];
-        let covered: u32 = masks.iter().map(|mask| mask.count_ones()).sum();
-        coverage[shared.pixel as usize] = small(covered) / small(samples);
-    }
-    coverage
-}
-
-#[expect(clippy::cast_precision_loss, reason = "at most 16")]
-fn small(n: u32) -> f32 {
-    n as f32
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "coverage is in 0–1")]
-fn alpha_code(coverage: f32) -> u8 {
-    (255.0 * coverage + 0.5).floor() as u8
-}
 
 /// Draws a picture of 16-bit values.
 ///

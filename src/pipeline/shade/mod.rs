@@ -20,7 +20,7 @@ use varyings::{Records, Source, Varyings};
 pub const BLOCK: usize = 64;
 
 /// The largest radiance: that of a half float, so that every format downstream can hold it.
-const BRIGHTEST: f32 = 65504.0;
+pub const BRIGHTEST: f32 = 65504.0;
 
 /// One triangle's share of one pixel.
 #[derive(Clone, Copy, Debug, Default)]

@@ -15,7 +15,7 @@ use super::shade::varyings::{Records, ShadowFrame, Source};
 use super::shade::{self, BLOCK, Lighting};
 use super::stats::TileTimes;
 use super::work::{Cancelled, Work};
-use super::{output, resolve, sky};
+use super::{resolve, sky};
 use crate::math::simd::*;
 use crate::plan::{Draw, Item};
 use cover::{BlockDepths, IdTarget, Region, Visibility};
@@ -145,27 +145,43 @@ impl Scratch {
     }
 }
 
-/// Draws the tiles of a colour picture.
+/// The colours of a tile, ready to be written.
+pub struct Resolved<'a> {
+    /// Linear red, green and blue of the pixel (x, y) at `y · side + x`; premultiplied with alpha.
+    pub colors: &'a [Vec<f32>; 3],
+    /// Share of each pixel that surfaces cover; `None` before a background that covers the rest.
+    pub alpha: Option<&'a [f32]>,
+    /// Pixels from one row to the next.
+    pub side: usize,
+}
+
+/// Draws the tiles of a picture of colours. `write` takes each tile's colours to its rows.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn draw(shared: &Shared, pixels: &mut [[u8; 4]], work: &Work) -> Result<TileTimes, Cancelled> {
+pub fn draw<P: Send>(
+    shared: &Shared,
+    tiles: Vec<Tile<P>>,
+    write: impl Fn(&Resolved, Tile<P>) + Sync,
+    work: &Work,
+) -> Result<TileTimes, Cancelled> {
     let nearest = samples::nearest_to_centre(shared.samples);
     let order = SampleOrder { pattern: samples::pattern(shared.samples), nearest: &nearest };
-    let tiles = split(pixels, &shared.bins.grid);
-    let times = work
-        .map(tiles, Scratch::default, |scratch, tile| draw_tile(work.level, shared, &order, scratch, tile))?;
+    let times = work.map(tiles, Scratch::default, |scratch, tile| {
+        draw_tile(work.level, shared, &order, scratch, tile, &write)
+    })?;
     let mut total = TileTimes::default();
     times.iter().for_each(|t| total.add(t));
     Ok(total)
 }
 
-fn draw_tile(
+fn draw_tile<P>(
     level: Level,
     shared: &Shared,
     order: &SampleOrder,
     scratch: &mut Scratch,
-    tile: Tile<[u8; 4]>,
+    tile: Tile<P>,
+    write: impl Fn(&Resolved, Tile<P>),
 ) -> TileTimes {
     let mut clock = Clock::start();
     let mut times = TileTimes::default();
@@ -189,9 +205,10 @@ fn draw_tile(
     shared.background.draw(level, &scratch.fragments.sky, &region, side, &mut scratch.sky);
     times.sky = clock.lap();
 
-    let opaque = !shared.background.is_transparent();
     resolve::resolve(&scratch.fragments, &scratch.sky, shared.samples, side, &mut scratch.colors);
-    output::encode_tile(level, &scratch.fragments, &scratch.colors, shared.samples, opaque, side, tile.rows);
+    let transparent = shared.background.is_transparent();
+    let alpha = transparent.then(|| resolve::coverage(&scratch.fragments, shared.samples, side));
+    write(&Resolved { colors: &scratch.colors, alpha: alpha.as_deref(), side }, tile);
     times.resolve = clock.lap();
     times
 }

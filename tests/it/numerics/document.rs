@@ -37,7 +37,7 @@ pub fn draw(plan: &Plan) -> Frame {
 pub fn colors(json: &Value) -> Vec<[u8; 4]> {
     match draw(&plan(&scene(json), &FrameRequest::default())).pixels {
         Pixels::Rgba8 { pixels, .. } => pixels,
-        Pixels::Gray16(_) => panic!("asked for colours"),
+        _ => panic!("asked for colours"),
     }
 }
 
@@ -46,6 +46,6 @@ pub fn values(json: &Value, output: Output) -> Vec<u16> {
     let request = FrameRequest { output, ..FrameRequest::default() };
     match draw(&plan(&scene(json), &request)).pixels {
         Pixels::Gray16(values) => values,
-        Pixels::Rgba8 { .. } => panic!("asked for values"),
+        _ => panic!("asked for values"),
     }
 }

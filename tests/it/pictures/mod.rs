@@ -5,6 +5,7 @@ mod faces;
 mod golden;
 mod lighting;
 mod outputs;
+mod radiance;
 mod sampler;
 mod shadows;
 mod sky;
