@@ -56,7 +56,7 @@ struct FrameFlags {
     /// JPEG quality, 1 to 100
     #[arg(long, allow_hyphen_values = true)]
     quality: Option<String>,
-    /// color, depth, normal, albedo or instance
+    /// color, depth, normal, albedo, instance or wireframe
     #[arg(long, allow_hyphen_values = true)]
     output: Option<String>,
     /// blinn_phong, lambert, unlit, vertex_color or normal, in place of every material's

@@ -30,7 +30,7 @@ pub(super) struct FrameQuery {
     /// JPEG quality
     #[param(minimum = 1, maximum = 100)]
     quality: Option<u8>,
-    /// `color`, `depth`, `normal`, `albedo` or `instance`
+    /// `color`, `depth`, `normal`, `albedo`, `instance` or `wireframe`
     output: Option<String>,
     /// `blinn_phong`, `lambert`, `unlit`, `vertex_color` or `normal`, in place of every material's
     shading: Option<String>,

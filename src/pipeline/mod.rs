@@ -35,27 +35,66 @@ use shade::Lighting;
 use shade::light::LightSource;
 use std::time::Instant;
 
-/// Draws one frame. The order of the lines is the order of the passes.
+/// Draws one frame.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn render(plan: &Plan, work: &Work) -> Result<Frame, Cancelled> {
-    let mut timings = Timings::default();
-    let shadow_maps =
-        timed(&mut timings, "shadow", !plan.shadows.is_empty(), || shadow::render_maps(&plan.shadows, work))?;
-    let bins = timed(&mut timings, "geometry", true, || transform_clip_and_bin(plan, work))?;
-    match plan.output {
-        Output::Color | Output::Normal | Output::Albedo | Output::Radiance => {
-            draw_colors(plan, &bins, &shadow_maps, timings, work)
-        }
-        Output::Depth | Output::Instance => draw_values(plan, &bins, timings, work),
-    }
+    let frames = render_each(std::slice::from_ref(plan), work)?;
+    Ok(frames.into_iter().next().expect("a frame for each plan"))
 }
 
-/// The camera's geometry, binned by tile.
-fn transform_clip_and_bin(plan: &Plan, work: &Work) -> Result<Bins, Cancelled> {
-    let grid = TileGrid::new(&plan.view, tiles::tile_shift(plan.samples), samples::pattern(plan.samples));
+/// Draws a frame for each plan. Plans that show the same triangles, as the outputs of one request do,
+/// are drawn from one pass over them. The order of the lines is the order of the passes.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn render_each(plans: &[Plan], work: &Work) -> Result<Vec<Frame>, Cancelled> {
+    let mut frames = Vec::with_capacity(plans.len());
+    let mut passes: Vec<(&Plan, Bins)> = Vec::new();
+    for plan in plans {
+        let mut timings = Timings::default();
+        let shadow_maps = timed(&mut timings, "shadow", !plan.shadows.is_empty(), || {
+            shadow::render_maps(&plan.shadows, work)
+        })?;
+        let drawn = passes.iter().position(|(drawn, _)| plan.shows_the_triangles_of(drawn));
+        let pass = timed(&mut timings, "geometry", drawn.is_none(), || match drawn {
+            Some(pass) => Ok(pass),
+            None => transform_clip_and_bin(plan, plans, work).map(|bins| {
+                passes.push((plan, bins));
+                passes.len() - 1
+            }),
+        })?;
+        frames.push(draw_output(plan, &passes[pass].1, &shadow_maps, timings, work)?);
+    }
+    Ok(frames)
+}
+
+/// The camera's geometry, binned by tile for all of `others` that show the same triangles.
+fn transform_clip_and_bin(plan: &Plan, others: &[Plan], work: &Work) -> Result<Bins, Cancelled> {
+    let same = others.iter().filter(|other| other.shows_the_triangles_of(plan)).chain([plan]);
+    let counts: Vec<u32> = same.map(|plan| plan.samples).collect();
+    let most = counts.iter().fold(1, |most, &count| most.max(count));
+    let all: Vec<[i32; 2]> = counts.iter().flat_map(|&count| samples::pattern(count)).copied().collect();
+    let grid = TileGrid::new(&plan.view, tiles::tile_shift(most), &all);
     geometry::run(&plan.items, &plan.view, grid, work)
+}
+
+/// What the plan's output shows of the triangles.
+fn draw_output(
+    plan: &Plan,
+    bins: &Bins,
+    maps: &[shadow::ShadowMap],
+    timings: Timings,
+    work: &Work,
+) -> Result<Frame, Cancelled> {
+    match plan.output {
+        Output::Color | Output::Normal | Output::Albedo | Output::Radiance => {
+            draw_colors(plan, bins, maps, timings, work)
+        }
+        Output::Depth | Output::Instance => draw_values(plan, bins, timings, work),
+        Output::Wireframe => draw_wireframe(plan, bins, timings, work),
+    }
 }
 
 /// Draws a picture of colours: per tile cover → shade → sky → resolve → write.
@@ -128,6 +167,15 @@ fn draw_values(plan: &Plan, bins: &Bins, mut timings: Timings, work: &Work) -> R
     output::draw_values(plan, bins, &mut pixels, work)?;
     timings.push("raster", milliseconds(began));
     Ok(Frame::new(plan, Pixels::Gray16(pixels), Stats::new(bins, 0, 0), timings))
+}
+
+/// Draws the edges of what each pixel sees.
+fn draw_wireframe(plan: &Plan, bins: &Bins, mut timings: Timings, work: &Work) -> Result<Frame, Cancelled> {
+    let mut pixels = vec![[0; 4]; plan.view.pixels()];
+    let began = Instant::now();
+    output::draw_wireframe(plan, bins, &mut pixels, work)?;
+    timings.push("raster", milliseconds(began));
+    Ok(Frame::new(plan, Pixels::Rgba8 { pixels, opaque: true }, Stats::new(bins, 0, 0), timings))
 }
 
 /// Runs a pass and notes its time, if it is one that this frame has.

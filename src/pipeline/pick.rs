@@ -25,7 +25,7 @@ pub struct Hit {
 /// # Errors
 /// [`Cancelled`].
 pub fn pick(plan: &Plan, x: u32, y: u32, work: &Work) -> Result<Option<Hit>, Cancelled> {
-    let bins = super::transform_clip_and_bin(plan, work)?;
+    let bins = super::transform_clip_and_bin(plan, &[], work)?;
     let shift = tile_shift(plan.samples);
     let place = [x >> shift, y >> shift];
     let mut scratch = Scratch::default();

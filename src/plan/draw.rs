@@ -32,6 +32,15 @@ impl Item {
         Self { mesh, linear, origin, mirrored: instance.is_mirrored(), slots }
     }
 
+    /// Whether both put the same triangles in the same place.
+    #[must_use]
+    pub fn places_the_triangles_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh)
+            && self.linear == other.linear
+            && self.origin == other.origin
+            && self.slots == other.slots
+    }
+
     /// Around it, anchored; `None` for a mesh without vertices.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
@@ -58,7 +67,7 @@ impl Item {
 }
 
 /// What becomes of the triangles of one material slot.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slot {
     /// Index into the plan's draws: what shades it.
     pub draw: u32,

@@ -187,6 +187,15 @@ impl Plan {
         })
     }
 
+    /// Whether a pass over this plan's triangles is one over those of `other` too: the same view of the
+    /// same items, of which the same draws are shown.
+    #[must_use]
+    pub fn shows_the_triangles_of(&self, other: &Self) -> bool {
+        self.view == other.view
+            && self.items.len() == other.items.len()
+            && self.items.iter().zip(&other.items).all(|(own, other)| own.places_the_triangles_of(other))
+    }
+
     /// Strong entity tag of the picture, in quotes: a function of its inputs and the program's
     /// version alone.
     #[must_use]

@@ -102,6 +102,8 @@ pub enum Output {
     Albedo,
     /// 16-bit grey: which instance.
     Instance,
+    /// White lines on black: the edges of what is seen.
+    Wireframe,
     /// The shaded picture in linear light, before `post`, in 32-bit floats: what the float file formats
     /// hold. No query names it.
     Radiance,
@@ -120,7 +122,8 @@ impl Output {
         match self {
             Self::Color | Self::Normal | Self::Albedo => 4,
             Self::Depth | Self::Instance => 2,
-            Self::Radiance => 16,
+            // Beside the colour which triangle is seen.
+            Self::Radiance | Self::Wireframe => 16,
         }
     }
 }

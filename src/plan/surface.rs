@@ -20,7 +20,7 @@ pub fn settle(
         Output::Color | Output::Radiance => shading.unwrap_or(material.shading),
         Output::Normal => Shading::Normal,
         // The diffuse colour alone; what depth and instances show needs no colour at all.
-        Output::Albedo | Output::Depth | Output::Instance => Shading::Unlit,
+        Output::Albedo | Output::Depth | Output::Instance | Output::Wireframe => Shading::Unlit,
     };
     let lit = matches!(shading, Shading::BlinnPhong | Shading::Lambert);
     let colored = lit || shading == Shading::Unlit;

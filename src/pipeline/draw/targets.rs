@@ -1,8 +1,10 @@
 //! Render targets.
 
 use super::Rect;
+use crate::math::round_to_f32;
 use crate::pipeline::geometry::bin::TileGrid;
 use crate::pipeline::shader::TARGETS;
+use crate::pipeline::{Frame, Pixels, Stats, Timings};
 
 /// What draw calls draw into: up to four colour targets, a depth and an id target of one size. Rows run
 /// top to bottom.
@@ -70,6 +72,45 @@ impl Targets {
     #[must_use]
     pub fn ids(&self) -> &[u32] {
         &self.ids
+    }
+
+    /// A colour target as a picture: each pixel the mean of `scale × scale` of the target's.
+    ///
+    /// # Panics
+    /// If `scale` does not divide both sides.
+    #[must_use]
+    pub fn frame(&self, target: usize, scale: u32) -> Frame {
+        assert!(self.width.is_multiple_of(scale) && self.height.is_multiple_of(scale), "a whole picture");
+        let (width, height) = (self.width / scale, self.height / scale);
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let pixels: Vec<[f32; 4]> = pixels.map(|pixel| self.mean(target, pixel, scale)).collect();
+        let opaque = pixels.iter().all(|pixel| pixel[3] == 1.0);
+        Frame {
+            width,
+            height,
+            pixels: Pixels::Rgba32F { pixels, opaque },
+            stats: Stats::default(),
+            timings: Timings::default(),
+            depth_range: None,
+        }
+    }
+
+    /// Straight mean colour of a square of pixels.
+    fn mean(&self, target: usize, [x, y]: [u32; 2], scale: u32) -> [f32; 4] {
+        let rows = (y * scale..(y + 1) * scale).map(|row| row as usize * self.width as usize);
+        let mut sum = [0.0f64; 4];
+        for row in rows {
+            let from = row + (x * scale) as usize;
+            for color in &self.colors[target][from..from + scale as usize] {
+                let [r, g, b, alpha] = color.map(f64::from);
+                for (sum, value) in sum.iter_mut().zip([r * alpha, g * alpha, b * alpha, alpha]) {
+                    *sum += value;
+                }
+            }
+        }
+        let [r, g, b, alpha] = sum;
+        let color = if alpha > 0.0 { [r / alpha, g / alpha, b / alpha] } else { [0.0; 3] };
+        [color[0], color[1], color[2], alpha / f64::from(scale * scale)].map(round_to_f32)
     }
 
     /// Fills a colour target.

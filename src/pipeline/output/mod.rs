@@ -1,6 +1,7 @@
 //! Output: linear colour to bytes or floats, and what the data outputs show.
 
 mod colors;
+mod wireframe;
 
 pub use colors::{encode_tile, write_radiance};
 
@@ -32,6 +33,29 @@ pub fn draw_values(plan: &Plan, bins: &Bins, pixels: &mut [u16], work: &Work) ->
         }
     })?;
     Ok(())
+}
+
+/// Draws the edges of what each pixel sees.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn draw_wireframe(
+    plan: &Plan,
+    bins: &Bins,
+    pixels: &mut [[u8; 4]],
+    work: &Work,
+) -> Result<(), Cancelled> {
+    let side = 1usize << bins.grid.tile_shift;
+    let mut seen = vec![None; pixels.len()];
+    work.map(tiles::split(&mut seen, &bins.grid), Scratch::default, |scratch, tile| {
+        scratch.find_visible(work.level, bins, tile.place, 1);
+        for (y, row) in tile.rows.into_iter().enumerate() {
+            for (x, entry) in row.iter_mut().enumerate() {
+                *entry = scratch.entry(y * side + x);
+            }
+        }
+    })?;
+    wireframe::draw(&plan.view, bins, &seen, pixels, work)
 }
 
 /// 65535 · (z − near) / (far − near) of the view-space distance z; 65535 for the background.

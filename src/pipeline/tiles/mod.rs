@@ -137,11 +137,17 @@ impl Scratch {
         &self.list
     }
 
+    /// Which triangle the pixel's first sample sees.
+    #[must_use]
+    pub fn entry(&self, pixel: usize) -> Option<Entry> {
+        let id = self.samples.id[pixel] as usize;
+        (id > 0).then(|| self.list[id - 1])
+    }
+
     /// The triangle that the pixel's first sample sees.
     #[must_use]
     pub fn seen<'a>(&self, pixel: usize, bins: &'a Bins) -> Option<&'a super::geometry::setup::Triangle> {
-        let id = self.samples.id[pixel] as usize;
-        (id > 0).then(|| triangle(self.list[id - 1], bins).1)
+        self.entry(pixel).map(|entry| triangle(entry, bins).1)
     }
 }
 

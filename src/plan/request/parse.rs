@@ -13,12 +13,13 @@ use std::str::FromStr;
 const SHADINGS: &[(&str, Shading)] = <Shading as crate::scene::document::words::Word>::WORDS;
 
 /// Words of `output`.
-const OUTPUTS: [(&str, Output); 5] = [
+const OUTPUTS: [(&str, Output); 6] = [
     ("color", Output::Color),
     ("depth", Output::Depth),
     ("normal", Output::Normal),
     ("albedo", Output::Albedo),
     ("instance", Output::Instance),
+    ("wireframe", Output::Wireframe),
 ];
 
 const NOT_AVAILABLE: &str = "is not available in this version";

@@ -59,7 +59,14 @@ fn the_demo_is_the_same_to_the_byte() {
 #[test]
 fn data_outputs_are_the_same_to_the_byte() {
     let scene = scene_with(&demo::document(), &demo::files());
-    let outputs = [Output::Depth, Output::Normal, Output::Albedo, Output::Instance, Output::Radiance];
+    let outputs = [
+        Output::Depth,
+        Output::Normal,
+        Output::Albedo,
+        Output::Instance,
+        Output::Radiance,
+        Output::Wireframe,
+    ];
     assert_same("demo", &scene, &outputs.map(|o| sized(161, 97, output(o))));
 }
 

@@ -216,6 +216,7 @@ fn golden_outputs() {
         ("normal", Output::Normal),
         ("albedo", Output::Albedo),
         ("instance", Output::Instance),
+        ("wireframe", Output::Wireframe),
     ];
     for (name, what) in outputs {
         assert_golden(&format!("output/{name}"), &draw(&document, &Files::default(), &output(what)));

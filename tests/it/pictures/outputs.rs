@@ -1,9 +1,10 @@
 //! What the data outputs show, and `pick`.
 
 use crate::closed_form::{Camera, Lens, Ray, hit_box, hit_plane, hit_sphere};
-use crate::draw::{Picture, frame, output, pick, scene, values};
+use crate::draw::{Picture, frame, output, pick, plan, scene, values, work};
 use crate::measure::{at_most, none_of};
 use glam::DVec3;
+use rasterd::pipeline;
 use rasterd::plan::Output;
 use serde_json::{Value, json};
 
@@ -184,5 +185,100 @@ fn pick_agrees_with_instance_and_depth_and_knows_the_position() {
         at_most(&format!("pick, {name}"), "position off the line of sight", worst, 1e-9);
         // A sub-pixel is 1.5·10⁻⁴ units at this distance, foreshortened on the floor.
         at_most(&format!("pick, {name}"), "height over the floor", off, 3e-4);
+    }
+}
+
+/// Whether each pixel is on a line.
+fn lines(document: &Value) -> Vec<bool> {
+    let picture = Picture::new(frame(&scene(document), &output(Output::Wireframe)));
+    picture.pixels.iter().map(|pixel| pixel[0] == 255).collect()
+}
+
+/// Two cards, one behind the other, seen straight on: 10 pixels a unit.
+fn cards() -> Value {
+    let card = |x: f64, y: f64, half: f64, z: f64| json!({ "type": "triangles", "positions": [[x - half, y - half, z], [x + half, y - half, z], [x + half, y + half, z]] });
+    json!({
+        "camera": { "position": [0, 0, 5], "target": [0, 0, 0], "orthographic": { "height": 8 } },
+        "lights": {},
+        "meshes": { "near": card(0.0, 0.0, 2.03, 1.0), "far": card(1.0, -1.0, 2.03, 0.0) },
+        "instances": { "near": { "mesh": "near" }, "far": { "mesh": "far" } },
+        "render": { "width": 80, "height": 80 },
+    })
+}
+
+#[test]
+fn a_wireframe_has_the_edges_that_are_not_hidden() {
+    // The legs of the near triangle are at x = 2.03 and y = −2.03, those of the far one at 3.03 and −3.03.
+    // The hypotenuses run along y = x and y = x − 2.
+    let lit = lines(&cards());
+    let (mut right, mut wrong) = (0, 0);
+    for (i, lit) in (0..).zip(lit) {
+        let p = [f64::from(i % 80) / 10.0 - 3.95, 3.95 - f64::from(i / 80) / 10.0];
+        let inside = |c: [f64; 2], p: [f64; 2]| {
+            let (x, y) = (p[0] - c[0], p[1] - c[1]);
+            (2.03 - x).min(y + 2.03).min((x - y) * std::f64::consts::FRAC_1_SQRT_2)
+        };
+        let (near, far) = (inside([0.0, 0.0], p), inside([1.0, -1.0], p));
+        // Half a pixel is 0.05; what is as close to that as the snapping, or near a corner, is left out.
+        let on = |distance: f64| distance.abs() < 0.05;
+        if [near, far].iter().any(|d| (d.abs() - 0.05).abs() < 0.003) {
+            continue;
+        }
+        let corner =
+            [[2.03, -2.03], [2.03, 2.03], [-2.03, -2.03], [3.03, -3.03], [3.03, 1.03], [-1.03, -3.03]];
+        if corner.iter().any(|c| (p[0] - c[0]).hypot(p[1] - c[1]) < 0.2) {
+            continue;
+        }
+        // Where the far one's edge runs behind the near one it is hidden.
+        let expected = on(near) || (on(far) && near < 0.0);
+        right += usize::from(expected && lit);
+        wrong += usize::from(expected != lit);
+    }
+    assert!(right > 120, "{right}");
+    none_of("wireframe", "pixels that are wrongly lines or none", wrong, right);
+}
+
+#[test]
+fn a_wireframe_line_has_no_gap() {
+    // The hypotenuse of the near triangle, row by row.
+    let lit = lines(&cards());
+    for row in 22..58 {
+        assert!((0..80).any(|x| lit[row * 80 + x] && x < 79 - row + 2), "row {row}");
+    }
+}
+
+#[test]
+fn a_cut_triangle_shows_its_own_edges_alone() {
+    // A floor of two triangles under the eye, cut by the near plane: the cut is no line, nor are the
+    // seams between its pieces.
+    let floor = json!({
+        "camera": { "position": [0, 1, 0], "target": [0, 1, -1], "fov_y_deg": 90, "near": 1 },
+        "lights": {},
+        "meshes": { "floor": { "type": "triangles", "positions": [[-900, 0, 900], [900, 0, 900], [0, 0, -900]] } },
+        "instances": { "floor": { "mesh": "floor" } },
+        "render": { "width": 64, "height": 64 },
+    });
+    let lit = lines(&floor);
+    assert!(lit[40 * 64..].iter().all(|lit| !lit));
+    assert!(lit.iter().any(|lit| *lit));
+}
+
+#[test]
+fn outputs_drawn_together_are_those_drawn_alone() {
+    let all =
+        [Output::Color, Output::Depth, Output::Normal, Output::Albedo, Output::Instance, Output::Wireframe];
+    for (camera, count) in cameras().iter().zip([4, 16]) {
+        let mut document = still_life(camera);
+        document["render"]["samples"] = json!(count);
+        let scene = scene(&document);
+        let plans = all.map(|what| plan(&scene, &output(what)));
+        assert!(plans.iter().all(|plan| plan.shows_the_triangles_of(&plans[0])));
+        let together = pipeline::render_each(&plans, &work()).expect("nobody cancels");
+        for ((what, frame), plan) in all.iter().zip(&together).zip(&plans) {
+            let alone = pipeline::render(plan, &work()).expect("nobody cancels");
+            assert!(frame.pixels == alone.pixels, "{what:?}");
+        }
+        let passes = together.iter().filter(|frame| frame.timings.iter().any(|(pass, _)| pass == "geometry"));
+        assert_eq!(passes.count(), 1);
     }
 }
