@@ -86,29 +86,29 @@ pub fn face_normal(positions: &[DVec3], [a, b, c]: [u32; 3]) -> Option<DVec3> {
 
 /// One of the three corners of a triangle.
 #[derive(Clone, Copy)]
-struct CornerId(u32);
+pub(super) struct CornerId(u32);
 
 impl CornerId {
-    fn triangle(self) -> usize {
+    pub(super) fn triangle(self) -> usize {
         self.0 as usize / 3
     }
 
-    fn place(self) -> usize {
+    pub(super) fn place(self) -> usize {
         self.0 as usize % 3
     }
 }
 
 /// A triangle that has area.
 #[derive(Clone, Copy)]
-struct Face {
+pub(super) struct Face {
     /// Unit normal.
     normal: DVec3,
     /// Angles at its corners in radians.
-    angles: [f64; 3],
+    pub(super) angles: [f64; 3],
 }
 
 impl Face {
-    fn of(positions: &[DVec3], triangle: [u32; 3]) -> Option<Self> {
+    pub(super) fn of(positions: &[DVec3], triangle: [u32; 3]) -> Option<Self> {
         let normal = face_normal(positions, triangle)?;
         let corners = triangle.map(|i| positions[i as usize]);
         let angle = |k: usize| {
@@ -129,14 +129,14 @@ fn weld(positions: &[DVec3]) -> Vec<u32> {
 }
 
 /// Which corners meet at each welded position: `corners[ends[p − 1]..ends[p]]` for position p.
-struct Incidence {
+pub(super) struct Incidence {
     ends: Vec<u32>,
     corners: Vec<CornerId>,
 }
 
 impl Incidence {
     /// Counts, then scatters; corners stay in the order of triangles.
-    fn new(welded: &[u32], triangles: &[[u32; 3]]) -> Self {
+    pub(super) fn new(welded: &[u32], triangles: &[[u32; 3]]) -> Self {
         let place = |index: u32| welded[index as usize] as usize;
         let mut ends = vec![0u32; welded.len() + 1];
         for index in triangles.as_flattened() {
@@ -157,7 +157,7 @@ impl Incidence {
     }
 
     /// The corners at each position that has any.
-    fn points(&self) -> impl Iterator<Item = &[CornerId]> {
+    pub(super) fn points(&self) -> impl Iterator<Item = &[CornerId]> {
         let begins = std::iter::once(0).chain(self.ends.iter().copied());
         begins
             .zip(&self.ends)
