@@ -56,6 +56,26 @@ pub struct Material {
     pub opacity_map: Option<Arc<Texture>>,
 }
 
+impl Material {
+    /// Its normal map, unless that is flat.
+    #[must_use]
+    pub fn normals(&self) -> Option<&Arc<Texture>> {
+        self.normal_map.as_ref().filter(|map| !map.is_flat_normal_map())
+    }
+
+    /// Its bump map, unless that is level everywhere.
+    #[must_use]
+    pub fn heights(&self) -> Option<&Arc<Texture>> {
+        self.bump_map.as_ref().filter(|map| self.bump_scale != 0.0 && map.constant.is_none())
+    }
+
+    /// Whether any map tilts its normals.
+    #[must_use]
+    pub fn has_relief(&self) -> bool {
+        self.normals().is_some() || self.heights().is_some()
+    }
+}
+
 impl Default for Material {
     fn default() -> Self {
         Self {

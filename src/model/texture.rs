@@ -76,9 +76,19 @@ pub struct Texture {
     pub scale: [f64; 2],
     /// See `scale`.
     pub offset: [f64; 2],
+    /// The one texel that all of the image consists of, if it does: what a map that changes nothing
+    /// is known by.
+    pub constant: Option<[u8; 4]>,
 }
 
 impl Image {
+    /// The one texel that all of it consists of, if it does.
+    #[must_use]
+    pub fn constant(&self) -> Option<[u8; 4]> {
+        let first = *self.texels.first()?;
+        self.texels.iter().all(|texel| *texel == first).then_some(first)
+    }
+
     /// Whether every texel has alpha 255.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
@@ -110,13 +120,21 @@ impl Texture {
             Filter::Nearest => Vec::new(),
             Filter::Bilinear | Filter::Trilinear => mips::chain(&image, color_space),
         };
-        Self { image, color_space, mips: Arc::new(mips), filter, wrap, scale: [1.0; 2], offset: [0.0; 2] }
+        let (constant, mips) = (image.constant(), Arc::new(mips));
+        Self { image, color_space, mips, filter, wrap, scale: [1.0; 2], offset: [0.0; 2], constant }
     }
 
     /// The same texture under scaled and moved coordinates; texels and mips are shared.
     #[must_use]
     pub fn placed(&self, scale: [f64; 2], offset: [f64; 2]) -> Self {
         Self { scale, offset, ..self.clone() }
+    }
+
+    /// Whether, as a normal map, it leaves every normal as it is: x and y are 0 everywhere.
+    #[must_use]
+    pub fn is_flat_normal_map(&self) -> bool {
+        let flat = |[r, g, b, _]: [u8; 4]| (r, g) == (128, 128) && b > 128;
+        self.color_space == ColorSpace::Linear && self.constant.is_some_and(flat)
     }
 
     /// Bytes of memory its image and mips hold, whoever shares them.

@@ -1,7 +1,7 @@
 //! What is drawn: instances placed in the scene, and the surface of each of their material slots.
 
 use crate::math::Bounds;
-use crate::model::{Mesh, Shading, Texture};
+use crate::model::{Mesh, Shading, Tangents, Texture};
 use crate::scene::{Cull, Instance, Scene};
 use glam::{DMat3, DVec3, Vec3};
 use std::sync::Arc;
@@ -103,6 +103,8 @@ pub struct Surface {
     pub diffuse_map: Option<Arc<Texture>>,
     /// Multiplies `emissive`.
     pub emissive_map: Option<Arc<Texture>>,
+    /// What tilts its normals; `None` where nothing does, or where no normal is read.
+    pub relief: Option<Relief>,
     /// Whether vertex colours are read.
     pub vertex_colors: bool,
     /// Whether lights fall on it.
@@ -124,6 +126,27 @@ pub struct Specular {
     pub map: Option<Arc<Texture>>,
 }
 
+/// Detail finer than triangles: maps that tilt a surface's normal. At least one of the two is there; a
+/// surface with both has the heights on top of what the normal map makes of it.
+#[derive(Clone, Debug)]
+pub struct Relief {
+    /// How texture coordinates lie on the mesh; `None` where it has none.
+    pub tangents: Option<Arc<Tangents>>,
+    /// Normals in tangent space.
+    pub normal_map: Option<Arc<Texture>>,
+    /// A height map.
+    pub heights: Option<Heights>,
+}
+
+/// A height map.
+#[derive(Clone, Debug)]
+pub struct Heights {
+    /// Its red channel.
+    pub map: Arc<Texture>,
+    /// Height in world units at texel value 1; not zero.
+    pub scale: f32,
+}
+
 impl Surface {
     /// Whether any map is read.
     #[must_use]
@@ -134,7 +157,16 @@ impl Surface {
     /// Every map that is read.
     pub fn maps(&self) -> impl Iterator<Item = &Arc<Texture>> {
         let specular = self.specular.as_ref().and_then(|s| s.map.as_ref());
-        [self.diffuse_map.as_ref(), self.emissive_map.as_ref(), specular].into_iter().flatten()
+        let normals = self.relief.as_ref().and_then(|relief| relief.normal_map.as_ref());
+        let heights = self.relief.as_ref().and_then(|relief| relief.heights.as_ref());
+        let maps = [self.diffuse_map.as_ref(), self.emissive_map.as_ref(), specular, normals];
+        maps.into_iter().chain([heights.map(|heights| &heights.map)]).flatten()
+    }
+
+    /// Whether it is read how much of the texture's coordinates a world unit is: by heights.
+    #[must_use]
+    pub fn needs_uv_per_world(&self) -> bool {
+        self.relief.as_ref().is_some_and(|relief| relief.heights.is_some())
     }
 
     /// Whether the interpolated normal is read.

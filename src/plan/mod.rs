@@ -10,7 +10,7 @@ mod shadow;
 mod surface;
 mod view;
 
-pub use draw::{Draw, Item, Slot, Specular, Surface};
+pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
 pub use request::{FrameRequest, Output, QueryFault};
 pub use shadow::{ShadowPass, orthonormal_basis};
 
@@ -136,7 +136,8 @@ impl Plan {
             let item = number(self.items.len());
             let slots = instance.materials.iter().map(|&material| {
                 let material = &scene.materials[material as usize];
-                let surface = surface::settle(material, mesh, instance.receives_shadow, shading, self.output);
+                let (tangents, receives) = (scene.tangents(instance), instance.receives_shadow);
+                let surface = surface::settle(material, mesh, tangents, receives, shading, self.output);
                 let draw = number(self.draws.len());
                 self.draws.push(Draw { item, instance: number(index), surface });
                 Slot { draw, cull: if material.double_sided { Cull::None } else { scene.render.cull } }

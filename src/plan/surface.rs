@@ -1,17 +1,19 @@
 //! Settling a surface: a material, reduced to what changes the picture.
 
 use super::request::Output;
-use super::{Specular, Surface};
-use crate::model::{Material, Mesh, Shading, Texture, Wrap};
+use super::{Heights, Relief, Specular, Surface};
+use crate::model::{Material, Mesh, Shading, Tangents, Texture, Wrap};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// The surface that `material` makes of `mesh`. `shading` overrides the material's; data outputs
+/// The surface that `material` makes of `mesh`, whose `tangents` are there if any of its materials has a
+/// relief and it has texture coordinates. `shading` overrides the material's; data outputs
 /// override both.
 #[must_use]
 pub fn settle(
     material: &Material,
     mesh: &Mesh,
+    tangents: Option<&Arc<Tangents>>,
     receives_shadow: bool,
     shading: Option<Shading>,
     output: Output,
@@ -39,14 +41,28 @@ pub fn settle(
         specular,
         diffuse_map: map(&material.diffuse_map, colored),
         emissive_map: map(&material.emissive_map, emissive != Vec3::ZERO),
+        relief: None,
         vertex_colors: mesh.colors.is_some() && shading != Shading::Normal,
         lit,
         receives_shadow,
         periodic_uv: false,
     };
+    if surface.needs_normal() {
+        surface.relief = relief(material, tangents);
+    }
     let periodic = surface.maps().all(|map| is_periodic(map));
     surface.periodic_uv = periodic;
     surface
+}
+
+/// What tilts the normals of `material`; `None` where its maps change none.
+fn relief(material: &Material, tangents: Option<&Arc<Tangents>>) -> Option<Relief> {
+    let normal_map = material.normals().cloned();
+    // Without texture coordinates all of the surface has one height.
+    let map = material.heights().filter(|_| tangents.is_some());
+    let heights = map.map(|map| Heights { map: map.clone(), scale: material.bump_scale });
+    let tilts = normal_map.is_some() || heights.is_some();
+    tilts.then(|| Relief { tangents: tangents.cloned(), normal_map, heights })
 }
 
 /// Whether whole turns of the texture coordinates change nothing.

@@ -2,7 +2,7 @@
 
 use crate::math::Bounds;
 use crate::math::angle::rotation_about_deg;
-use crate::model::{Material, Mesh, Shading};
+use crate::model::{Material, Mesh, Shading, Tangents};
 use glam::{DMat3, DVec3, Vec3};
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Every mesh in order of name.
     pub meshes: Vec<Arc<Mesh>>,
+    /// Tangents of those meshes that are drawn with a relief and have texture coordinates.
+    pub tangents: Vec<Option<Arc<Tangents>>>,
     /// Names of `meshes`.
     pub mesh_names: Vec<String>,
     /// Every material that an instance can refer to.
@@ -303,6 +305,12 @@ impl Scene {
     #[must_use]
     pub fn mesh(&self, instance: &Instance) -> &Arc<Mesh> {
         &self.meshes[instance.mesh as usize]
+    }
+
+    /// The tangents of `instance`'s mesh, if it has any.
+    #[must_use]
+    pub fn tangents(&self, instance: &Instance) -> Option<&Arc<Tangents>> {
+        self.tangents[instance.mesh as usize].as_ref()
     }
 
     /// Instances that are drawn, with their index, in submission order.

@@ -55,12 +55,9 @@ fn point_shadows(scene: &Scene) -> Option<String> {
 }
 
 fn materials(document: &Document) -> Vec<String> {
-    let features: [Feature<MaterialPart>; 3] = [
+    let features: [Feature<MaterialPart>; 2] = [
         ("transparency (opacity, opacity_map)", |m| m.opacity < 1.0 || m.map(MapUse::Opacity).is_some()),
         ("alpha_cutoff", |m| m.alpha_cutoff.is_some()),
-        ("surface detail (normal_map, bump_map)", |m| {
-            m.map(MapUse::Normal).is_some() || m.map(MapUse::Bump).is_some()
-        }),
     ];
     let used = |test: fn(&MaterialPart) -> bool| {
         document.materials.iter().find(|(_, m)| test(m)).map(|(name, _)| name)
@@ -75,10 +72,7 @@ fn materials(document: &Document) -> Vec<String> {
 
 /// The same for materials that come from MTL files: those behind the default and the document's own.
 fn mtl_materials(scene: &Scene, document: &Document) -> Vec<String> {
-    let features: [Feature<Material>; 2] = [
-        ("transparency", |m| m.opacity < 1.0 || m.opacity_map.is_some()),
-        ("surface detail (norm, map_Bump)", |m| m.normal_map.is_some() || m.bump_map.is_some()),
-    ];
+    let features: [Feature<Material>; 1] = [("transparency", |m| m.opacity < 1.0 || m.opacity_map.is_some())];
     let of_files = scene.materials.get(1 + document.materials.len()..).unwrap_or_default();
     features
         .into_iter()

@@ -1,9 +1,10 @@
 //! Shading: visible fragments in, linear RGB out. Each triangle is shaded once a pixel.
 //!
 //! Fragments come sorted by draw and triangle. A block of up to [`BLOCK`] of them goes through a
-//! short sequence of kernels: interpolate, read maps, add lights.
+//! short sequence of kernels: interpolate, tilt normals, read maps, add lights.
 
 pub mod light;
+pub mod relief;
 pub mod texture;
 pub mod varyings;
 
@@ -87,6 +88,9 @@ pub fn shade_block(
     let (count, surface) = (fragments.len(), source.surface());
     varyings::interpolate(level, records, source, fragments, &mut scratch.varyings);
     let Scratch { varyings, visibility } = scratch;
+    if let Some(relief) = &surface.relief {
+        relief::tilt(level, relief, varyings, count);
+    }
     match surface.shading {
         Shading::VertexColor => *out = if surface.vertex_colors { varyings.color } else { [[1.0; BLOCK]; 3] },
         Shading::Normal => *out = varyings.normal.map(|axis| axis.map(normal_as_colour)),

@@ -1,4 +1,9 @@
-//! Texture sampling: level of detail from analytic derivatives, addressing, filtering in linear light.
+//! Texture sampling: level of detail from analytic derivatives, addressing, filtering in linear light;
+//! texels as colours, as normals, and as heights.
+
+mod heights;
+
+pub use heights::sample_slopes;
 
 use super::BLOCK;
 use super::varyings::Varyings;
@@ -17,6 +22,21 @@ static UNORM_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|c| round_to_f32(f64::from(u8::try_from(c).unwrap_or(255)) / 255.0))
 });
 
+/// The component of a normal that a code in 0–255 stands for, exactly 0 at 128 and 1 at 255. Source:
+/// Direct3D 11.3 functional specification, 3.2.3.3, moved by 128.
+fn snorm(code: f64) -> f32 {
+    round_to_f32(((code - 128.0) / 127.0).max(-1.0))
+}
+
+/// Components of normals for the 256 codes of a linear image.
+static LINEAR_SNORM: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|c| snorm(f64::from(u8::try_from(c).unwrap_or(255)))));
+
+/// The same for an image whose codes are sRGB-encoded.
+static SRGB_SNORM: LazyLock<[f32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|c| snorm(colour::linear_from_srgb8(u8::try_from(c).unwrap_or(255)) * 255.0))
+});
+
 /// Samples `texture` at a block's texture coordinates: red, green, blue, alpha, in linear light.
 pub fn sample(
     level: Level,
@@ -25,32 +45,44 @@ pub fn sample(
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
 ) {
-    dispatch!(level, simd => sample_kernel(simd, texture, varyings, count, out));
+    sample_with(level, &Sampler::of_colors(texture), varyings, count, out);
 }
 
-#[inline(always)]
-fn sample_kernel<S: Simd>(
-    simd: S,
+/// Samples a normal map: x along u, y along v, z along the normal, filtered after decoding and so not
+/// of unit length. (The fourth is alpha.)
+///
+/// Decoding is affine but for the code 0, which stands for −1 as 1 does: mips, made from the codes, hold
+/// the mean of the decoded texels but for 1/127 of the share that had that code.
+pub fn sample_normals(
+    level: Level,
     texture: &Texture,
     varyings: &Varyings,
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
 ) {
-    let sampler = Sampler::new(texture);
+    sample_with(level, &Sampler::of_normals(texture), varyings, count, out);
+}
+
+fn sample_with(
+    level: Level,
+    sampler: &Sampler,
+    varyings: &Varyings,
+    count: usize,
+    out: &mut [[f32; BLOCK]; 4],
+) {
+    dispatch!(level, simd => sample_kernel(simd, sampler, varyings, count, out));
+}
+
+#[inline(always)]
+fn sample_kernel<S: Simd>(
+    simd: S,
+    sampler: &Sampler,
+    varyings: &Varyings,
+    count: usize,
+    out: &mut [[f32; BLOCK]; 4],
+) {
     for at in (0..count).step_by(LANES) {
-        let coordinate = always(
-            #[inline(always)]
-            |axis: usize| {
-                f32x8::from_slice(simd, &varyings.uv[axis][at..at + LANES])
-                    * round_to_f32(texture.scale[axis])
-                    + offset(texture, axis)
-            },
-        );
-        let (u, v) = (coordinate(0), coordinate(1));
-        let level = match texture.filter {
-            Filter::Nearest => f32x8::splat(simd, 0.0),
-            _ => level_of_detail(simd, texture, varyings, at),
-        };
+        let [u, v, level] = place(simd, sampler.texture, varyings, at);
         for lane in 0..LANES.min(count - at) {
             let texel = sampler.sample(u[lane], v[lane], level[lane]);
             for c in 0..4 {
@@ -58,6 +90,23 @@ fn sample_kernel<S: Simd>(
             }
         }
     }
+}
+
+/// Coordinates of eight fragments in the picture, and their levels of detail.
+#[inline(always)]
+fn place<S: Simd>(simd: S, texture: &Texture, varyings: &Varyings, at: usize) -> [f32x8<S>; 3] {
+    let coordinate = always(
+        #[inline(always)]
+        |axis: usize| {
+            f32x8::from_slice(simd, &varyings.uv[axis][at..at + LANES]) * round_to_f32(texture.scale[axis])
+                + offset(texture, axis)
+        },
+    );
+    let level = match texture.filter {
+        Filter::Nearest => f32x8::splat(simd, 0.0),
+        _ => level_of_detail(simd, texture, varyings, at),
+    };
+    [coordinate(0), coordinate(1), level]
 }
 
 /// How far the picture is moved along an axis: without its whole turns where they change nothing (an
@@ -100,7 +149,14 @@ struct Sampler<'a> {
     texture: &'a Texture,
     decode: &'static [f32; 256],
     alpha: &'static [f32; 256],
+    /// The 16-bit code of a mip that stands for 0.
+    zero: f32,
+    /// What one step of that code is.
+    step: f32,
 }
+
+/// The 16-bit code of a normal's zero, `128/255 · 65535`.
+const SNORM_ZERO: f32 = 32_896.0;
 
 /// The level below a level of detail.
 #[inline(always)]
@@ -113,12 +169,21 @@ fn whole(level: f32) -> usize {
 type Texel = [f32; 4];
 
 impl<'a> Sampler<'a> {
-    fn new(texture: &'a Texture) -> Self {
+    fn of_colors(texture: &'a Texture) -> Self {
         let decode = match texture.color_space {
             ColorSpace::Srgb => &*SRGB_DECODE,
             ColorSpace::Linear => &*UNORM_DECODE,
         };
-        Self { texture, decode, alpha: &UNORM_DECODE }
+        Self { texture, decode, alpha: &UNORM_DECODE, zero: 0.0, step: 1.0 / 65535.0 }
+    }
+
+    fn of_normals(texture: &'a Texture) -> Self {
+        let decode = match texture.color_space {
+            ColorSpace::Srgb => &*SRGB_SNORM,
+            ColorSpace::Linear => &*LINEAR_SNORM,
+        };
+        let step = 1.0 / (65535.0 - SNORM_ZERO);
+        Self { decode, zero: SNORM_ZERO, step, ..Self::of_colors(texture) }
     }
 
     #[inline(always)]
@@ -175,8 +240,14 @@ impl<'a> Sampler<'a> {
         } else {
             let mip = &self.texture.mips[level - 1];
             let [r, g, b, a] = mip.texels[index(x, y, mip.width, mip.height)];
-            [unorm16(r), unorm16(g), unorm16(b), unorm16(a)]
+            [self.decode16(r), self.decode16(g), self.decode16(b), unorm16(a)]
         }
+    }
+
+    /// The value of a 16-bit code, to within one rounding.
+    #[inline(always)]
+    fn decode16(&self, code: u16) -> f32 {
+        (f32::from(code) - self.zero) * self.step
     }
 }
 

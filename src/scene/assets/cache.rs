@@ -2,7 +2,7 @@
 
 use super::build::LoadedMesh;
 use crate::model::texture::{ColorSpace, Image};
-use crate::model::{Filter, Texture, Wrap};
+use crate::model::{Filter, Mesh, Tangents, Texture, Wrap};
 use crate::scene::document::{MeshPart, TextureSource};
 use bytes::Bytes;
 use std::collections::BTreeMap;
@@ -13,6 +13,8 @@ use std::sync::Arc;
 pub struct Assets {
     /// By name of the mesh.
     pub(super) meshes: BTreeMap<String, MeshAsset>,
+    /// By the address of the mesh, which is held beside them so that no other mesh takes it.
+    pub(super) tangents: BTreeMap<usize, (Arc<Mesh>, Arc<Tangents>)>,
     /// By [`ImageSource::key`].
     pub(super) images: BTreeMap<String, ImageAsset>,
     /// By [`Sampling::key`].
@@ -51,16 +53,17 @@ impl Assets {
         self.files.iter().map(|(name, file)| (name.as_str(), file.hash.as_bytes()))
     }
 
-    /// Bytes of all meshes, images and textures, each counted once.
+    /// Bytes of all meshes, tangents, images and textures, each counted once.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let mut meshes: Vec<_> = self.meshes.values().map(|asset| &asset.loaded.mesh).collect();
         meshes.sort_by_key(|mesh| Arc::as_ptr(mesh));
         meshes.dedup_by(|a, b| Arc::ptr_eq(a, b));
         let meshes: u64 = meshes.into_iter().map(|mesh| mesh.bytes()).sum();
+        let tangents: u64 = self.tangents.values().map(|(_, tangents)| tangents.bytes()).sum();
         let images: u64 = self.images.values().map(|asset| asset.image.bytes()).sum();
         let mips: u64 = self.textures.values().map(|texture| mip_bytes(texture)).sum();
-        meshes + images + mips
+        meshes + tangents + images + mips
     }
 }
 

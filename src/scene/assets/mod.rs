@@ -10,7 +10,7 @@ use super::compile::SceneError;
 use super::document::{BackgroundChoice, BackgroundPart, EnvironmentPart, MeshPart, missing_file};
 use super::{Document, Files, Warning};
 use crate::limits::Limits;
-use crate::model::Mesh;
+use crate::model::{Mesh, Tangents};
 use build::LoadedMesh;
 use bytes::Bytes;
 use cache::{HashedFile, MeshAsset};
@@ -102,6 +102,24 @@ impl<'a> Loader<'a> {
             self.models.insert(stored.clone(), loaded.clone());
         }
         Ok(loaded)
+    }
+
+    /// The tangents of `mesh`; `None` if it has no texture coordinates.
+    pub(super) fn tangents(&mut self, mesh: &Arc<Mesh>) -> Result<Option<Arc<Tangents>>, SceneError> {
+        let key = Arc::as_ptr(mesh).addr();
+        if let Some((_, tangents)) = self.assets.tangents.get(&key) {
+            return Ok(Some(tangents.clone()));
+        }
+        let before = self.previous.and_then(|previous| previous.tangents.get(&key));
+        let Some(tangents) = (match before {
+            Some((_, tangents)) => Some(tangents.clone()),
+            None => Tangents::of(mesh).map(Arc::new),
+        }) else {
+            return Ok(None);
+        };
+        self.count_bytes(tangents.bytes())?;
+        self.assets.tangents.insert(key, (mesh.clone(), tangents.clone()));
+        Ok(Some(tangents))
     }
 
     /// Warns of backgrounds whose files are missing.

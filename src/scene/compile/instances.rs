@@ -1,16 +1,17 @@
 //! Instances: transforms, material slots, exact bounds.
 
-use super::keeps_boxes;
 use super::surfaces::Surfaces;
+use super::{SceneError, keeps_boxes};
 use crate::limits::MAX_MEASURED_VERTICES;
 use crate::math::Bounds;
 use crate::math::angle::rotation_xyz_deg;
-use crate::model::Mesh;
 use crate::model::normals::unit;
-use crate::scene::assets::NamedMesh;
+use crate::model::{Mesh, Tangents};
+use crate::scene::assets::{Loader, NamedMesh};
 use crate::scene::document::InstancePart;
 use crate::scene::{Document, Instance, Spin};
 use glam::{DMat3, DVec3};
+use std::sync::Arc;
 
 /// Every instance in order of name, in world space; [`measure`] fills in `extent`.
 pub(super) fn compile(document: &Document, meshes: &[NamedMesh], surfaces: &Surfaces) -> Vec<Instance> {
@@ -33,6 +34,24 @@ pub(super) fn compile(document: &Document, meshes: &[NamedMesh], surfaces: &Surf
         })
     };
     document.instances.iter().filter_map(place).collect()
+}
+
+/// For each mesh its tangents, if an instance that is drawn has a relief on it.
+pub(super) fn tangents(
+    instances: &[Instance],
+    meshes: &[NamedMesh],
+    surfaces: &Surfaces,
+    loader: &mut Loader,
+) -> Result<Vec<Option<Arc<Tangents>>>, SceneError> {
+    let mut tangents = vec![None; meshes.len()];
+    for instance in instances.iter().filter(|instance| instance.visible) {
+        let mesh = instance.mesh as usize;
+        let has_relief = |&slot: &u32| surfaces.materials[slot as usize].has_relief();
+        if tangents[mesh].is_none() && instance.materials.iter().any(has_relief) {
+            tangents[mesh] = loader.tangents(&meshes[mesh].mesh)?;
+        }
+    }
+    Ok(tangents)
 }
 
 /// With a unit axis; documents have none that is zero.

@@ -76,10 +76,11 @@ pub fn compile(
     let mut loader = Loader::new(files, previous, limits);
     let meshes = loader.meshes(document)?;
     let surfaces = Surfaces::compile(document, &meshes, &mut loader)?;
+    let mut instances = instances::compile(document, &meshes, &surfaces);
+    let tangents = instances::tangents(&instances, &meshes, &surfaces, &mut loader)?;
     loader.check_backgrounds(&document.environment);
     let (assets, mut warnings) = loader.finish();
 
-    let mut instances = instances::compile(document, &meshes, &surfaces);
     let anchor = anchor(document, &instances, &meshes);
     for instance in &mut instances {
         instance.translation -= anchor;
@@ -92,6 +93,7 @@ pub fn compile(
         background: document.environment.chosen().map_or(Background::Transparent, background),
         backgrounds: named_backgrounds(document),
         lights: lights::compile(document, anchor),
+        tangents,
         mesh_names: meshes.iter().map(|loaded| loaded.name.clone()).collect(),
         meshes: meshes.into_iter().map(|loaded| loaded.mesh).collect(),
         materials: surfaces.materials,

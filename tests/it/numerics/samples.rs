@@ -121,6 +121,7 @@ fn worst_excess(item: &Item, view: &View, samples: u32) -> (f64, usize) {
         specular: None,
         diffuse_map: None,
         emissive_map: None,
+        relief: None,
         vertex_colors: true,
         lit: false,
         receives_shadow: false,

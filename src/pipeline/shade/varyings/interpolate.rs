@@ -15,6 +15,13 @@ pub struct Varyings {
     pub uv: [[f32; BLOCK]; 2],
     /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y in units per pixel.
     pub uv_per_pixel: [[f32; BLOCK]; 4],
+    /// Direction in which u grows, in world axes; about a unit vector, neither exactly so nor exactly in
+    /// the surface, and zero where the texture has no direction. Of a back face: negated.
+    pub along_u: [[f32; BLOCK]; 3],
+    /// The same for v.
+    pub along_v: [[f32; BLOCK]; 3],
+    /// Units of u and of v to a world unit along them.
+    pub uv_per_world: [[f32; BLOCK]; 2],
     /// Vertex colour, linear RGB.
     pub color: [[f32; BLOCK]; 3],
     /// For each shadow map: texel x and y from the map's centre, and depth.
@@ -28,6 +35,9 @@ impl Default for Varyings {
             position: [[0.0; BLOCK]; 3],
             uv: [[0.0; BLOCK]; 2],
             uv_per_pixel: [[0.0; BLOCK]; 4],
+            along_u: [[0.0; BLOCK]; 3],
+            along_v: [[0.0; BLOCK]; 3],
+            uv_per_world: [[0.0; BLOCK]; 2],
             color: [[0.0; BLOCK]; 3],
             shadow: Vec::new(),
         }
@@ -188,6 +198,16 @@ fn interpolate_eight<S: Simd>(
         if !source.shadows.is_empty() {
             let lift = lift_to_round(simd, lanes, &weights, position);
             lift_receivers(simd, source, lift, out, at);
+        }
+    }
+    if source.surface.relief.is_some() {
+        lanes.mix3(simd, &weights, layout.tangent).store(&mut out.along_u, at);
+        lanes.mix3(simd, &weights, layout.tangent + 9).store(&mut out.along_v, at);
+    }
+    if source.surface.needs_uv_per_world() {
+        for c in 0..2 {
+            let per_world = lanes.mix(simd, &weights, layout.uv_per_world + c, 2);
+            per_world.store_slice(&mut out.uv_per_world[c][at..at + LANES]);
         }
     }
     if source.surface.vertex_colors {

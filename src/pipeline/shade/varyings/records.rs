@@ -1,11 +1,11 @@
 //! One record a visible triangle: everything that interpolation reads, laid out for it.
 
-use super::corners::Corners;
+use super::corners::{CornerFrames, Corners};
 use super::{ShadowFrame, Source};
 use crate::math::{Projection, round_to_f32};
 use crate::pipeline::geometry::bin::Chunk;
 use crate::pipeline::geometry::setup::Triangle;
-use crate::plan::Surface;
+use crate::plan::{Relief, Surface};
 use glam::{DVec2, DVec3, Vec3};
 
 /// Where the parts of a record are. Parts that a surface does not need have no room.
@@ -14,6 +14,8 @@ pub(super) struct Layout {
     pub(super) normal: usize,
     pub(super) position: usize,
     pub(super) uv: usize,
+    pub(super) tangent: usize,
+    pub(super) uv_per_world: usize,
     pub(super) color: usize,
     pub(super) singles: usize,
     /// In the f64 part: texture coordinates, behind the shadow maps'.
@@ -30,14 +32,17 @@ impl Layout {
             start
         };
         // Three corner normals, the geometric one, and how far they round the triangle; three
-        // positions; the numerators of the derivatives of (u, v); three colours.
+        // positions; the numerators of the derivatives of (u, v); three directions of u, then of v; u and
+        // v to a world unit at three corners; three colours.
         let normal = room(surface.needs_normal(), 13);
         let position = room(surface.lit, 9);
         let uv = room(surface.needs_uv(), 6);
+        let tangent = room(surface.relief.is_some(), 18);
+        let uv_per_world = room(surface.needs_uv_per_world(), 6);
         let color = room(surface.vertex_colors, 9);
         let uv_place = SHADOW + 9 * shadows;
         let doubles = uv_place + if surface.needs_uv() { 6 } else { 0 };
-        Self { normal, position, uv, color, singles: at, uv_place, doubles }
+        Self { normal, position, uv, tangent, uv_per_world, color, singles: at, uv_place, doubles }
     }
 }
 
@@ -76,8 +81,8 @@ impl Records {
         for frame in source.shadows {
             self.push_shadow(source, frame, &corners, shadow_normal, scale);
         }
+        let facing = if t.is_back() { -1.0 } else { 1.0 };
         if source.surface.needs_normal() {
-            let facing = if t.is_back() { -1.0 } else { 1.0 };
             let normals = corners.normals(source);
             for n in normals.into_iter().chain([corners.geometric_normal]) {
                 self.push_vec3((n * facing).as_vec3());
@@ -90,8 +95,24 @@ impl Records {
         if source.surface.needs_uv() {
             self.push_uvs(&corners.uvs(source), t, scale);
         }
+        if let Some(relief) = &source.surface.relief {
+            self.push_frames(&corners.frames(source, relief.tangents.as_deref()), relief, facing);
+        }
         if source.surface.vertex_colors {
             corners.colors(source).into_iter().for_each(|c| self.push_vec3(c));
+        }
+    }
+
+    /// Directions of u and of v and, for heights, how much of them is a world unit.
+    ///
+    /// A back is the front turned inside out, relief and all: with its normals, its directions change
+    /// sign.
+    fn push_frames(&mut self, frames: &CornerFrames, relief: &Relief, facing: f64) {
+        for along in frames.along_u.iter().chain(&frames.along_v) {
+            self.push_vec3((along * facing).as_vec3());
+        }
+        if relief.heights.is_some() {
+            self.singles.extend(frames.per_world.iter().flat_map(|per| per.as_vec2().to_array()));
         }
     }
 

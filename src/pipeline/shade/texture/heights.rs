@@ -1,0 +1,108 @@
+//! Height maps: slopes from differences of filtered texels.
+
+use super::{Sampler, address, index, place, whole};
+use crate::math::round_to_f32;
+use crate::math::simd::*;
+use crate::model::texture::{Filter, Texture};
+use crate::pipeline::shade::BLOCK;
+use crate::pipeline::shade::varyings::Varyings;
+
+/// Samples the slopes of a height map, its red channel in linear light: ∂h/∂u and ∂h/∂v in heights a
+/// unit of the mesh's texture coordinates.
+///
+/// Differences over one texel of the level that is read, half of it to each side: seen from close the
+/// slope changes steadily across texels, where the exact derivative of a bilinear picture jumps at
+/// each of them. [`Filter::Nearest`] is read as bilinear in level 0: a picture of steps has no slope.
+pub fn sample_slopes(
+    level: Level,
+    texture: &Texture,
+    varyings: &Varyings,
+    count: usize,
+    out: &mut [[f32; BLOCK]; 2],
+) {
+    dispatch!(level, simd => slopes_kernel(simd, texture, varyings, count, out));
+}
+
+#[inline(always)]
+fn slopes_kernel<S: Simd>(
+    simd: S,
+    texture: &Texture,
+    varyings: &Varyings,
+    count: usize,
+    out: &mut [[f32; BLOCK]; 2],
+) {
+    let sampler = Sampler::of_colors(texture);
+    let scale = texture.scale.map(round_to_f32);
+    for at in (0..count).step_by(LANES) {
+        let [u, v, level] = place(simd, texture, varyings, at);
+        for lane in 0..LANES.min(count - at) {
+            let slopes = sampler.slopes(u[lane], v[lane], level[lane]);
+            for axis in 0..2 {
+                out[axis][at + lane] = slopes[axis] * scale[axis];
+            }
+        }
+    }
+}
+
+impl Sampler<'_> {
+    /// Slopes of the red channel in heights a unit of u and of v.
+    #[inline(always)]
+    fn slopes(&self, u: f32, v: f32, level: f32) -> [f32; 2] {
+        match self.texture.filter {
+            Filter::Nearest => self.level_slopes(0, u, v),
+            Filter::Bilinear => self.level_slopes(whole(level + 0.5), u, v),
+            Filter::Trilinear => {
+                let below = self.level_slopes(whole(level), u, v);
+                let t = level - level.floor();
+                if t == 0.0 {
+                    return below;
+                }
+                let above = self.level_slopes(whole(level) + 1, u, v);
+                [below[0] + (above[0] - below[0]) * t, below[1] + (above[1] - below[1]) * t]
+            }
+        }
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_precision_loss, reason = "a texture has at most 2¹⁴ texels a side")]
+    fn level_slopes(&self, level: usize, u: f32, v: f32) -> [f32; 2] {
+        let [w, h] = self.size(level);
+        let [du, dv] = [0.5 / w as f32, 0.5 / h as f32];
+        let rise = self.height(level, u + du, v) - self.height(level, u - du, v);
+        let climb = self.height(level, u, v + dv) - self.height(level, u, v - dv);
+        // Over the step as it was rounded; none is left where coordinates are beyond all texels.
+        let slope = always(
+            #[inline(always)]
+            |rise: f32, step: f32| if step > 0.0 { rise / step } else { 0.0 },
+        );
+        [slope(rise, (u + du) - (u - du)), slope(climb, (v + dv) - (v - dv))]
+    }
+
+    /// The red channel, bilinear in one level.
+    #[inline(always)]
+    fn height(&self, level: usize, u: f32, v: f32) -> f32 {
+        let [w, h] = self.size(level);
+        let (x, fx) = address(self.texture.wrap[0], u, w, 0.5);
+        let (y, fy) = address(self.texture.wrap[1], v, h, 0.5);
+        let row = always(
+            #[inline(always)]
+            |y: usize| {
+                let (a, b) = (self.red(level, x[0], y), self.red(level, x[1], y));
+                a + (b - a) * fx
+            },
+        );
+        let (a, b) = (row(y[0]), row(y[1]));
+        a + (b - a) * fy
+    }
+
+    #[inline(always)]
+    fn red(&self, level: usize, x: usize, y: usize) -> f32 {
+        if level == 0 {
+            let image = &self.texture.image;
+            self.decode[usize::from(image.texels[index(x, y, image.width, image.height)][0])]
+        } else {
+            let mip = &self.texture.mips[level - 1];
+            self.decode16(mip.texels[index(x, y, mip.width, mip.height)][0])
+        }
+    }
+}
