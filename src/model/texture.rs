@@ -79,6 +79,9 @@ pub struct Texture {
     /// The one texel that all of the image consists of, if it does: what a map that changes nothing
     /// is known by.
     pub constant: Option<[u8; 4]>,
+    /// Least code of each channel of level 0: a channel whose least is 255 reads as exactly 1 wherever it
+    /// is sampled.
+    pub least: [u8; 4],
 }
 
 impl Image {
@@ -93,6 +96,13 @@ impl Image {
     #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.texels.iter().all(|texel| texel[3] == u8::MAX)
+    }
+
+    /// Least code of each channel.
+    #[must_use]
+    pub fn least(&self) -> [u8; 4] {
+        let least = |least: [u8; 4], texel: &[u8; 4]| std::array::from_fn(|c| least[c].min(texel[c]));
+        self.texels.iter().fold([u8::MAX; 4], least)
     }
 
     /// The same size, with channel `channel` (0–3) of every texel as an opaque grey.
@@ -120,8 +130,9 @@ impl Texture {
             Filter::Nearest => Vec::new(),
             Filter::Bilinear | Filter::Trilinear => mips::chain(&image, color_space),
         };
-        let (constant, mips) = (image.constant(), Arc::new(mips));
-        Self { image, color_space, mips, filter, wrap, scale: [1.0; 2], offset: [0.0; 2], constant }
+        let (constant, least) = (image.constant(), image.least());
+        let (scale, offset) = ([1.0; 2], [0.0; 2]);
+        Self { image, color_space, mips: Arc::new(mips), filter, wrap, scale, offset, constant, least }
     }
 
     /// The same texture under scaled and moved coordinates; texels and mips are shared.
@@ -158,6 +169,12 @@ mod tests {
         let texture = Texture::new(image(), ColorSpace::Srgb, Filter::Nearest, [Wrap::Repeat; 2]);
         assert!(texture.mips.is_empty());
         assert_eq!(texture.bytes(), 32);
+    }
+
+    #[test]
+    fn least_is_that_of_each_channel() {
+        let texels = vec![[10, 200, 30, 255], [20, 100, 40, 255]];
+        assert_eq!(Image { width: 2, height: 1, texels }.least(), [10, 100, 30, 255]);
     }
 
     #[test]

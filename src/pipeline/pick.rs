@@ -1,7 +1,9 @@
 //! What is at one pixel.
 
+use super::samples;
 use super::tiles::cover::Region;
-use super::tiles::{Scratch, tile_shift};
+use super::tiles::fragments::SampleOrder;
+use super::tiles::{Scratch, Tests, tile_shift};
 use super::work::{Cancelled, Work};
 use crate::plan::Plan;
 use glam::DVec3;
@@ -20,7 +22,7 @@ pub struct Hit {
 }
 
 /// What is seen at the centre of the pixel (x, y); `None` for the background. The plan must be one of
-/// a single sample a pixel.
+/// a data output: of a single sample a pixel, with nothing blended.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -30,6 +32,9 @@ pub fn pick(plan: &Plan, x: u32, y: u32, work: &Work) -> Result<Option<Hit>, Can
     let place = [x >> shift, y >> shift];
     let mut scratch = Scratch::default();
     scratch.find_visible(work.level, &bins, place, plan.samples);
+    let tests = Tests { draws: &plan.draws, items: &plan.items, view: &plan.view };
+    let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
+    scratch.find_cut_outs(work.level, &bins, place, &order, &tests);
     let within = [x, y].map(|c| (c & ((1 << shift) - 1)) as usize);
     let Some(seen) = scratch.seen((within[1] << shift) + within[0], &bins) else { return Ok(None) };
     let screen = Region::of_tile(&bins.grid, place[0], place[1]).centre(within);

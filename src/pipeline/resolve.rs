@@ -1,6 +1,6 @@
 //! Resolve: the samples of a shared pixel to its colour.
 
-use super::tiles::fragments::Fragments;
+use super::tiles::fragments::{Fragments, SharedPixel};
 
 /// Fills the places of all pixels that more than one surface share, or none covers: with the mean of
 /// their samples. Uncovered samples show `sky`.
@@ -18,21 +18,25 @@ pub fn resolve(
         }
     }
     for shared in &fragments.shared {
-        let range = shared.first as usize..(shared.first + shared.count) as usize;
         for (channel, sky) in colors.iter_mut().zip(sky) {
             let pixel = shared.pixel as usize;
-            let mut values = [sky[pixel]; 16];
-            for at in range.clone() {
-                let color = channel[own + at];
-                for (s, value) in values.iter_mut().enumerate() {
-                    if fragments.masks[at] >> s & 1 == 1 {
-                        *value = color;
-                    }
-                }
-            }
+            let mut values = values(fragments, shared, &channel[own..], sky[pixel]);
             channel[pixel] = mean(&mut values[..samples as usize]);
         }
     }
+}
+
+/// One channel of every sample of a shared pixel: that of its fragment in `channel`, or `uncovered`.
+pub fn values(fragments: &Fragments, shared: &SharedPixel, channel: &[f32], uncovered: f32) -> [f32; 16] {
+    let mut values = [uncovered; 16];
+    for at in shared.first as usize..(shared.first + shared.count) as usize {
+        for (s, value) in values.iter_mut().enumerate() {
+            if fragments.masks[at] >> s & 1 == 1 {
+                *value = channel[at];
+            }
+        }
+    }
+    values
 }
 
 /// Share of each pixel's samples that a surface covers.
@@ -56,7 +60,7 @@ fn small(n: u32) -> f32 {
 
 /// Plain mean of 2ᵐ values, summed as a pairwise tree: exact if all are equal, so that a pixel with one
 /// surface can go without.
-fn mean(values: &mut [f32]) -> f32 {
+pub fn mean(values: &mut [f32]) -> f32 {
     let mut count = values.len();
     let mut share = 1.0;
     while count > 1 {

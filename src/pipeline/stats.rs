@@ -1,6 +1,7 @@
 //! What a frame cost and what it did.
 
 use super::geometry::{Bins, Counts};
+use std::time::Instant;
 
 /// Seconds and counts of one tile, or of all of them added up.
 #[derive(Clone, Copy, Debug, Default)]
@@ -88,5 +89,23 @@ impl Timings {
     /// Every pass with its milliseconds.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> {
         self.0.iter().copied()
+    }
+}
+
+/// A stopwatch that is read lap by lap.
+pub struct Clock(Instant);
+
+impl Clock {
+    /// From now.
+    pub fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Seconds since the last lap.
+    pub fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        let seconds = (now - self.0).as_secs_f64();
+        self.0 = now;
+        seconds
     }
 }

@@ -5,14 +5,16 @@
 
 mod draw;
 mod etag;
+pub mod opacity;
 pub mod request;
 mod shadow;
 mod surface;
 mod view;
 
 pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
+pub use opacity::{Alpha, AlphaTest, ItemTest, Opacity, Transparency};
 pub use request::{FrameRequest, Output, QueryFault};
-pub use shadow::{ShadowPass, orthonormal_basis};
+pub use shadow::{CasterTest, ShadowPass, orthonormal_basis};
 
 use crate::limits::Limits;
 use crate::math::View;
@@ -136,13 +138,21 @@ impl Plan {
             let item = number(self.items.len());
             let slots = instance.materials.iter().map(|&material| {
                 let material = &scene.materials[material as usize];
+                let transparency = opacity::of_output(material, self.output)?;
                 let (tangents, receives) = (scene.tangents(instance), instance.receives_shadow);
-                let surface = surface::settle(material, mesh, tangents, receives, shading, self.output);
+                let surface =
+                    surface::settle(material, mesh, tangents, receives, shading, self.output, &transparency);
                 let draw = number(self.draws.len());
-                self.draws.push(Draw { item, instance: number(index), surface });
-                Slot { draw, cull: if material.double_sided { Cull::None } else { scene.render.cull } }
+                let opacity = transparency.opacity();
+                let alpha_test = transparency.into_test();
+                self.draws.push(Draw { item, instance: number(index), surface, alpha_test });
+                let cull = if material.double_sided { Cull::None } else { scene.render.cull };
+                Some(Slot { draw, cull, opacity })
             });
             placed.slots = slots.collect();
+            if placed.slots.iter().all(Option::is_none) {
+                continue;
+            }
             self.charge(placed.frame_bytes(), limits)?;
             self.items.push(placed);
         }

@@ -1,6 +1,6 @@
 //! Fitting a shadow map: to the casters that can shade something, never to the camera.
 
-use super::{Item, Slot};
+use super::{AlphaTest, Item, ItemTest, Slot, number, opacity};
 use crate::math::{Bounds, Projection, View};
 use crate::model::Mesh;
 use crate::model::normals::face_normal;
@@ -12,8 +12,10 @@ use glam::DVec3;
 pub struct ShadowPass {
     /// The light as a viewer: orthographic, along the light.
     pub view: View,
-    /// What casts.
+    /// What casts. Draws of its slots count in `tests`.
     pub items: Vec<Item>,
+    /// What decides on the triangles of slots that are cut out.
+    pub tests: Vec<CasterTest>,
     /// Multiple of the normal offset that is just enough.
     pub bias: f64,
 }
@@ -29,7 +31,33 @@ pub fn orthonormal_basis(n: DVec3) -> (DVec3, DVec3) {
     (DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y))
 }
 
+/// The alpha test of one slot of a caster.
+#[derive(Clone, Debug)]
+pub struct CasterTest {
+    /// Index into [`ShadowPass::items`].
+    pub item: u32,
+    /// Which of its fragments cast.
+    pub test: AlphaTest,
+}
+
 impl ShadowPass {
+    /// The test of the triangles of `draw`.
+    #[must_use]
+    pub fn test(&self, draw: u32) -> ItemTest<'_> {
+        let caster = &self.tests[draw as usize];
+        ItemTest { item: &self.items[caster.item as usize], test: &caster.test }
+    }
+
+    /// Takes in a caster.
+    fn push(&mut self, caster: &Participant) {
+        let mut item = caster.item.clone();
+        let first = number(self.tests.len());
+        item.slots.iter_mut().flatten().for_each(|slot| slot.draw += first);
+        let number = number(self.items.len());
+        self.tests.extend(caster.tests.iter().map(|test| CasterTest { item: number, test: test.clone() }));
+        self.items.push(item);
+    }
+
     /// Working memory that drawing it takes.
     #[must_use]
     pub fn frame_bytes(&self) -> u64 {
@@ -46,33 +74,47 @@ pub fn plan(scene: &Scene, t: f64, direction: DVec3, shadow: &Shadow) -> Option<
         ShadowCull::Front => Cull::Front,
         ShadowCull::Back => Cull::Back,
     };
-    let participant = |instance: &Instance| {
-        let slots = vec![Slot { draw: 0, cull }; scene.mesh(instance).slots.len()];
-        Participant {
-            item: Item::new(scene, instance, t, slots),
-            casts: instance.casts_shadow,
-            receives: instance.receives_shadow,
-        }
-    };
-    let all: Vec<Participant> = scene.visible().map(|(_, instance)| participant(instance)).collect();
+    let all: Vec<Participant> =
+        scene.visible().map(|(_, instance)| Participant::new(scene, instance, t, cull)).collect();
     let casters = casters(&all, direction);
     let receivers: Vec<&Item> = all.iter().filter(|p| p.receives).map(|p| &p.item).collect();
-    let view = fit(direction, &casters, &receivers, shadow.resolution)?;
-    Some(ShadowPass { view, items: casters.into_iter().cloned().collect(), bias: shadow.bias })
+    let cast: Vec<&Item> = casters.iter().map(|p| &p.item).collect();
+    let view = fit(direction, &cast, &receivers, shadow.resolution)?;
+    let mut pass = ShadowPass { view, items: Vec::new(), tests: Vec::new(), bias: shadow.bias };
+    casters.into_iter().for_each(|caster| pass.push(caster));
+    Some(pass)
 }
 
 /// An instance as a light sees it.
 struct Participant {
-    /// What is drawn into the map.
+    /// What is drawn into the map. Draws of its slots count in `tests`.
     item: Item,
+    /// What decides on its slots that are cut out.
+    tests: Vec<AlphaTest>,
     /// Whether it throws shadows.
     casts: bool,
     /// Whether shadows fall on it.
     receives: bool,
 }
 
+impl Participant {
+    fn new(scene: &Scene, instance: &Instance, t: f64, cull: Cull) -> Self {
+        let mut tests = Vec::new();
+        let slots = instance.materials.iter().map(|&material| {
+            let transparency = opacity::of_solid(&scene.materials[material as usize])?;
+            let slot = Slot { draw: number(tests.len()), cull, opacity: transparency.opacity() };
+            tests.extend(transparency.into_test());
+            Some(slot)
+        });
+        let slots: Vec<_> = slots.collect();
+        let casts = instance.casts_shadow && slots.iter().any(Option::is_some);
+        let item = Item::new(scene, instance, t, slots);
+        Self { item, tests, casts, receives: instance.receives_shadow }
+    }
+}
+
 /// Those of `all` that throw a shadow on anything, along `direction`.
-fn casters(all: &[Participant], direction: DVec3) -> Vec<&Item> {
+fn casters(all: &[Participant], direction: DVec3) -> Vec<&Participant> {
     let boxes: Vec<Option<Bounds>> = all.iter().map(|p| p.item.bounds().filter(|_| p.receives)).collect();
     let join = |a: Option<Bounds>, b: Option<Bounds>| match (a, b) {
         (Some(a), Some(b)) => Some(a.union(b)),
@@ -88,8 +130,10 @@ fn casters(all: &[Participant], direction: DVec3) -> Vec<&Item> {
     for (i, p) in all.iter().enumerate() {
         let others = join(before, after[i + 1]);
         let shades = others.is_some_and(|others| can_shade(&p.item, others, direction));
-        if p.casts && (shades || (p.receives && can_shade_itself(&p.item.mesh))) {
-            found.push(&p.item);
+        // Light that falls through the holes of a hull meets its inside.
+        let is_hollow = !p.tests.is_empty() || can_shade_itself(&p.item.mesh);
+        if p.casts && (shades || (p.receives && is_hollow)) {
+            found.push(p);
         }
         before = join(before, boxes[i]);
     }

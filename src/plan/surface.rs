@@ -1,14 +1,15 @@
 //! Settling a surface: a material, reduced to what changes the picture.
 
+use super::opacity::{Alpha, Transparency};
 use super::request::Output;
 use super::{Heights, Relief, Specular, Surface};
 use crate::model::{Material, Mesh, Shading, Tangents, Texture, Wrap};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// The surface that `material` makes of `mesh`, whose `tangents` are there if any of its materials has a
-/// relief and it has texture coordinates. `shading` overrides the material's; data outputs
-/// override both.
+/// The surface that `material` makes of `mesh`, which shows through as `transparency` says and whose
+/// `tangents` are there if any of its materials has a relief and it has texture coordinates. `shading`
+/// overrides the material's; data outputs override both.
 #[must_use]
 pub fn settle(
     material: &Material,
@@ -17,6 +18,7 @@ pub fn settle(
     receives_shadow: bool,
     shading: Option<Shading>,
     output: Output,
+    transparency: &Transparency,
 ) -> Surface {
     let shading = match output {
         Output::Color | Output::Radiance => shading.unwrap_or(material.shading),
@@ -42,6 +44,10 @@ pub fn settle(
         diffuse_map: map(&material.diffuse_map, colored),
         emissive_map: map(&material.emissive_map, emissive != Vec3::ZERO),
         relief: None,
+        alpha: match transparency {
+            Transparency::Blended(alpha) => Some(alpha.clone()),
+            Transparency::Opaque | Transparency::CutOut(_) => None,
+        },
         vertex_colors: mesh.colors.is_some() && shading != Shading::Normal,
         lit,
         receives_shadow,
@@ -50,8 +56,7 @@ pub fn settle(
     if surface.needs_normal() {
         surface.relief = relief(material, tangents);
     }
-    let periodic = surface.maps().all(|map| is_periodic(map));
-    surface.periodic_uv = periodic;
+    surface.settle_periods();
     surface
 }
 
@@ -63,6 +68,35 @@ fn relief(material: &Material, tangents: Option<&Arc<Tangents>>) -> Option<Relie
     let heights = map.map(|map| Heights { map: map.clone(), scale: material.bump_scale });
     let tilts = normal_map.is_some() || heights.is_some();
     tilts.then(|| Relief { tangents: tangents.cloned(), normal_map, heights })
+}
+
+impl Surface {
+    /// A surface that has `alpha` and nothing else: what an alpha test reads.
+    #[must_use]
+    pub fn of_alpha(alpha: Alpha) -> Self {
+        let mut surface = Self {
+            shading: Shading::Unlit,
+            diffuse: Vec3::ZERO,
+            ambient: None,
+            emissive: Vec3::ZERO,
+            specular: None,
+            diffuse_map: None,
+            emissive_map: None,
+            relief: None,
+            alpha: Some(alpha),
+            vertex_colors: false,
+            lit: false,
+            receives_shadow: false,
+            periodic_uv: false,
+        };
+        surface.settle_periods();
+        surface
+    }
+
+    fn settle_periods(&mut self) {
+        let periodic = self.maps().all(|map| is_periodic(map));
+        self.periodic_uv = periodic;
+    }
 }
 
 /// Whether whole turns of the texture coordinates change nothing.

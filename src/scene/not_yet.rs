@@ -1,12 +1,8 @@
 //! What the wire contract has and this version does not draw: accepted, checked, and said in the
 //! scene's warnings. A feature that is drawn loses its function here.
 
-use super::document::{BackgroundPart, MapUse, MaterialPart, ShadowPart, default_lights};
+use super::document::{BackgroundPart, ShadowPart, default_lights};
 use super::{Document, LightKind, Scene, ShadowFilter, Warning};
-use crate::model::Material;
-
-/// What a feature is called, and whether something has it.
-type Feature<T> = (&'static str, fn(&T) -> bool);
 
 /// Everything in the scene that is not drawn as asked.
 pub(super) fn warnings(document: &Document, scene: &Scene) -> Vec<Warning> {
@@ -14,8 +10,6 @@ pub(super) fn warnings(document: &Document, scene: &Scene) -> Vec<Warning> {
     details.extend(backgrounds(document));
     details.extend(soft_shadows(document));
     details.extend(point_shadows(scene));
-    details.extend(materials(document));
-    details.extend(mtl_materials(scene, document));
     details.extend(post(document));
     details.into_iter().map(|detail| Warning { file: None, line: None, detail }).collect()
 }
@@ -52,33 +46,6 @@ fn point_shadows(scene: &Scene) -> Option<String> {
     let casts = |kind: &LightKind| matches!(kind, LightKind::Point { .. });
     let any = scene.lights.iter().any(|light| light.shadow.is_some() && casts(&light.kind));
     any.then(|| "shadows of point lights are not drawn by this version".to_owned())
-}
-
-fn materials(document: &Document) -> Vec<String> {
-    let features: [Feature<MaterialPart>; 2] = [
-        ("transparency (opacity, opacity_map)", |m| m.opacity < 1.0 || m.map(MapUse::Opacity).is_some()),
-        ("alpha_cutoff", |m| m.alpha_cutoff.is_some()),
-    ];
-    let used = |test: fn(&MaterialPart) -> bool| {
-        document.materials.iter().find(|(_, m)| test(m)).map(|(name, _)| name)
-    };
-    features
-        .into_iter()
-        .filter_map(|(feature, test)| {
-            used(test).map(|name| format!("{feature} of the material {name:?} is not drawn by this version"))
-        })
-        .collect()
-}
-
-/// The same for materials that come from MTL files: those behind the default and the document's own.
-fn mtl_materials(scene: &Scene, document: &Document) -> Vec<String> {
-    let features: [Feature<Material>; 1] = [("transparency", |m| m.opacity < 1.0 || m.opacity_map.is_some())];
-    let of_files = scene.materials.get(1 + document.materials.len()..).unwrap_or_default();
-    features
-        .into_iter()
-        .filter(|(_, test)| of_files.iter().any(|material| test(material)))
-        .map(|(feature, _)| format!("{feature} in MTL files is not drawn by this version"))
-        .collect()
 }
 
 fn post(document: &Document) -> Option<String> {

@@ -52,7 +52,7 @@ pub fn frame(scene: &Arc<Scene>, request: &FrameRequest) -> Frame {
 
 /// What is at a pixel's centre.
 pub fn pick(scene: &Arc<Scene>, x: u32, y: u32) -> Option<Hit> {
-    let plan = plan(scene, &FrameRequest { samples: Some(1), ..FrameRequest::default() });
+    let plan = plan(scene, &output(Output::Instance));
     pipeline::pick(&plan, x, y, &work()).expect("nobody cancels")
 }
 

@@ -18,7 +18,7 @@ use super::work::{Cancelled, Work};
 use super::{samples, tiles};
 use crate::math::Viewport;
 use crate::model::Part;
-use crate::plan::Slot;
+use crate::plan::{Opacity, Slot};
 
 /// Instances of indexed triangles.
 pub struct DrawCall<'a> {
@@ -53,7 +53,8 @@ impl DrawCall<'_> {
         let viewport = Viewport { width, height, farthest: 0.0 };
         let grid = TileGrid::new(viewport, tiles::tile_shift(1), samples::pattern(1));
         let instances: Vec<Instance> = (0..self.instances).map(|instance| self.instance(instance)).collect();
-        let slots: Vec<Slot> = (0..self.instances).map(|draw| Slot { draw, cull: state.cull }).collect();
+        let slot = |draw| Some(Slot { draw, cull: state.cull, opacity: Opacity::Opaque });
+        let slots: Vec<Option<Slot>> = (0..self.instances).map(slot).collect();
         let parts = [Part { first_triangle: 0, slot: 0 }];
         let primitives = instances.iter().zip(&slots).map(|(instance, slot)| Primitives {
             vertices: instance,

@@ -102,8 +102,8 @@ pub struct Primitives<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Runs of triangles by slot, ascending; the first begins at 0.
     pub parts: &'a [Part],
-    /// What becomes of the triangles of each slot.
-    pub slots: &'a [Slot],
+    /// What becomes of the triangles of each slot; `None`: nothing.
+    pub slots: &'a [Option<Slot>],
     /// Whether fronts run clockwise.
     pub mirrored: bool,
 }

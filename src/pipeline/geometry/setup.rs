@@ -7,7 +7,7 @@ use super::vertex::{GUARD, ScreenVertices, outcode};
 use crate::math::Viewport;
 use crate::math::simd::Level;
 use crate::pipeline::shader::ClipBlock;
-use crate::plan::Slot;
+use crate::plan::{Opacity, Slot};
 use crate::scene::Cull;
 use std::ops::Range;
 
@@ -48,6 +48,8 @@ pub struct Depth {
 impl Triangle {
     const STIFF: u32 = 8;
     const BACK: u32 = 16;
+    const CUT_OUT: u32 = 32;
+    const BLENDED: u32 = 64;
 
     /// Whether the depth is summed from edge functions (all terms ≥ 0, so nothing cancels) instead
     /// of taken from a plane: where the terms of the plane exceed the least depth by more than 2²⁴
@@ -61,6 +63,16 @@ impl Triangle {
     #[must_use]
     pub fn is_back(&self) -> bool {
         self.flags & Self::BACK != 0
+    }
+
+    /// How it meets what lies behind it: [`Slot::opacity`].
+    #[must_use]
+    pub fn opacity(&self) -> Opacity {
+        match self.flags & (Self::CUT_OUT | Self::BLENDED) {
+            0 => Opacity::Opaque,
+            Self::CUT_OUT => Opacity::CutOut,
+            _ => Opacity::Blended,
+        }
     }
 
     /// Which corner of the source triangle (or of the clipped piece) each corner is.
@@ -158,7 +170,7 @@ pub fn process(
         while parts.get(part + 1).is_some_and(|next| next.first_triangle as usize <= source) {
             part += 1;
         }
-        let slot = primitives.slots[parts[part].slot as usize];
+        let Some(slot) = primitives.slots[parts[part].slot as usize] else { continue };
         let corners = primitives.triangles[source];
         let codes = corners.map(|v| vertices.outcode[v as usize]);
         chunk.counts.triangles += 1;
@@ -286,7 +298,13 @@ fn set_up(v: [Snapped; 3], slot: Slot, source: u32, clipped: u32, mirrored: bool
             gain[0] * (v[0].x - v[2].x) + gain[1] * (v[1].x - v[0].x),
         ]
     };
-    let flags = order | if stiff { Triangle::STIFF } else { 0 } | if back { Triangle::BACK } else { 0 };
+    let opacity = match slot.opacity {
+        Opacity::Opaque => 0,
+        Opacity::CutOut => Triangle::CUT_OUT,
+        Opacity::Blended => Triangle::BLENDED,
+    };
+    let stiff = if stiff { Triangle::STIFF } else { 0 };
+    let flags = order | stiff | if back { Triangle::BACK } else { 0 } | opacity;
     Fate::Set(Triangle {
         x: v.map(|v| to_i32(v.x)),
         y: v.map(|v| to_i32(v.y)),

@@ -7,8 +7,10 @@ pub use colors::{encode_tile, write_radiance};
 
 use super::geometry::Bins;
 use super::geometry::setup::Triangle;
+use super::samples;
 use super::tiles::cover::Region;
-use super::tiles::{self, Scratch};
+use super::tiles::fragments::SampleOrder;
+use super::tiles::{self, Scratch, Tests};
 use super::work::{Cancelled, Work};
 use crate::math::View;
 use crate::plan::{Draw, Plan};
@@ -20,7 +22,7 @@ use crate::plan::{Draw, Plan};
 pub fn draw_values(plan: &Plan, bins: &Bins, pixels: &mut [u16], work: &Work) -> Result<(), Cancelled> {
     let side = 1usize << bins.grid.tile_shift;
     work.map(tiles::split(pixels, &bins.grid), Scratch::default, |scratch, tile| {
-        scratch.find_visible(work.level, bins, tile.place, 1);
+        find_seen(plan, bins, tile.place, work, scratch);
         let region = Region::of_tile(&bins.grid, tile.place[0], tile.place[1]);
         for (y, row) in tile.rows.into_iter().enumerate() {
             for (x, pixel) in row.iter_mut().enumerate() {
@@ -48,7 +50,7 @@ pub fn draw_wireframe(
     let side = 1usize << bins.grid.tile_shift;
     let mut seen = vec![None; pixels.len()];
     work.map(tiles::split(&mut seen, &bins.grid), Scratch::default, |scratch, tile| {
-        scratch.find_visible(work.level, bins, tile.place, 1);
+        find_seen(plan, bins, tile.place, work, scratch);
         for (y, row) in tile.rows.into_iter().enumerate() {
             for (x, entry) in row.iter_mut().enumerate() {
                 *entry = scratch.entry(y * side + x);
@@ -56,6 +58,14 @@ pub fn draw_wireframe(
         }
     })?;
     wireframe::draw(&plan.view, bins, &seen, pixels, work)
+}
+
+/// Finds what the centre of each pixel of a tile sees.
+fn find_seen(plan: &Plan, bins: &Bins, place: [u32; 2], work: &Work, scratch: &mut Scratch) {
+    let tests = Tests { draws: &plan.draws, items: &plan.items, view: &plan.view };
+    let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
+    scratch.find_visible(work.level, bins, place, 1);
+    scratch.find_cut_outs(work.level, bins, place, &order, &tests);
 }
 
 /// 65535 · (z − near) / (far − near) of the view-space distance z; 65535 for the background.

@@ -3,6 +3,7 @@
 //! Fragments come sorted by draw and triangle. A block of up to [`BLOCK`] of them goes through a
 //! short sequence of kernels: interpolate, tilt normals, read maps, add lights.
 
+pub mod alpha;
 pub mod light;
 pub mod relief;
 pub mod texture;

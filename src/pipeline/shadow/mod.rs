@@ -3,13 +3,16 @@
 //! The map is drawn by the same geometry and coverage code as the picture, with depth alone as its
 //! target. Tiles that no caster touches take no memory.
 
-use super::geometry::{self, bin::TileGrid};
+use super::geometry::{self, Bins, bin::TileGrid};
 use super::samples;
-use super::shade::{BLOCK, varyings::ShadowFrame};
-use super::tiles::cover::{self, BlockDepths, DepthTarget, Region};
+use super::shade::{self, BLOCK, varyings::ShadowFrame};
+use super::tiles::cover::{self, BlockDepths, DepthTarget, Region, Visibility};
+use super::tiles::cut_out;
+use super::tiles::fragments::{Entry, SampleOrder};
+use super::tiles::layers::{Layers, TileList};
 use super::work::{Cancelled, Work};
 use crate::math::simd::*;
-use crate::plan::ShadowPass;
+use crate::plan::{Opacity, ShadowPass};
 use glam::DMat3;
 
 const TILE_SHIFT: u32 = 6;
@@ -45,20 +48,8 @@ fn render_map(pass: &ShadowPass, work: &Work) -> Result<ShadowMap, Cancelled> {
         .flat_map(|row| (0..grid.columns).map(move |column| (column, row)))
         .filter(|&(column, row)| bins.chunks.iter().any(|chunk| !chunk.tile(column, row).is_empty()))
         .collect();
-    let drawn = work.map(touched.clone(), BlockDepths::default, |blocks, (column, row)| {
-        let mut depth = vec![0.0; TILE_TEXELS];
-        blocks.clear(TILE_SIDE);
-        let region = Region::of_tile(&grid, column, row);
-        dispatch!(work.level, simd => {
-            let mut target = DepthTarget { depth: &mut depth };
-            for chunk in &bins.chunks {
-                for &index in chunk.tile(column, row) {
-                    let triangle = &chunk.triangles[index as usize];
-                    cover::cover(simd, triangle, &region, TILE_SIDE, pattern, blocks, &mut target);
-                }
-            }
-        });
-        depth
+    let drawn = work.map(touched.clone(), Scratch::default, |scratch, place| {
+        draw_tile(work.level, pass, &bins, place, scratch)
     })?;
     let mut places = vec![0; grid.tiles() as usize];
     for (&(column, row), place) in touched.iter().zip(1..) {
@@ -66,6 +57,56 @@ fn render_map(pass: &ShadowPass, work: &Work) -> Result<ShadowMap, Cancelled> {
     }
     let tiles = std::iter::once(vec![0.0; TILE_TEXELS]).chain(drawn).collect();
     Ok(ShadowMap { resolution: pass.view.width, columns: grid.columns as usize, places, tiles })
+}
+
+/// Buffers of one worker, kept between tiles.
+#[derive(Default)]
+struct Scratch {
+    blocks: BlockDepths,
+    /// Triangles with holes, and their ids.
+    cut_outs: (Vec<Entry>, Vec<u32>),
+    layers: Layers,
+    shade: shade::Scratch,
+}
+
+/// Draws the tile at (column, row): opaque casters, then those with holes.
+fn draw_tile(
+    level: Level,
+    pass: &ShadowPass,
+    bins: &Bins,
+    (column, row): (u32, u32),
+    scratch: &mut Scratch,
+) -> Vec<f32> {
+    let pattern = samples::pattern(1);
+    let mut samples = Visibility { depth: vec![0.0; TILE_TEXELS], id: Vec::new() };
+    let Scratch { blocks, cut_outs: (list, ids), layers, shade } = scratch;
+    blocks.clear(TILE_SIDE);
+    list.clear();
+    let region = Region::of_tile(&bins.grid, column, row);
+    dispatch!(level, simd => {
+        let mut target = DepthTarget { depth: &mut samples.depth };
+        for (number, chunk) in (0..).zip(&bins.chunks) {
+            for &index in chunk.tile(column, row) {
+                let triangle = &chunk.triangles[index as usize];
+                if triangle.opacity() == Opacity::Opaque {
+                    cover::cover(simd, triangle, &region, TILE_SIDE, pattern, blocks, &mut target);
+                } else {
+                    list.push((number, index));
+                }
+            }
+        }
+    });
+    if !list.is_empty() {
+        // Among depths alone it does not matter whose they are.
+        samples.id.resize(TILE_TEXELS, 0);
+        ids.clear();
+        ids.extend((1..).take(list.len()));
+        let order = SampleOrder { pattern, nearest: &[0] };
+        let tile = TileList { bins, list, region: &region, side: TILE_SIDE, order: &order };
+        let test = |draw| pass.test(draw);
+        cut_out::draw(level, &tile, ids, test, &pass.view, &mut samples, blocks, layers, shade);
+    }
+    samples.depth
 }
 
 impl ShadowMap {

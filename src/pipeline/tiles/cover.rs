@@ -22,6 +22,9 @@ pub struct Region {
 
 /// Where covered samples go.
 pub trait Target<S: Simd> {
+    /// Whether what is covered hides what lies behind it, so that the hierarchy may take note.
+    const OCCLUDES: bool = true;
+
     /// Tests eight samples of one row against `depth` where `mask` is set, keeps the nearer ones.
     /// `at` is the index of the first of them.
     fn test_and_write(&mut self, simd: S, at: usize, mask: mask32x8<S>, depth: f32x8<S>);
@@ -110,7 +113,7 @@ impl<S: Simd> Target<S> for DepthTarget<'_> {
 
 /// For each 8×8 block, a depth that every one of its samples has reached: what lies wholly behind it
 /// is hidden.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct BlockDepths(Vec<f32>);
 
 impl BlockDepths {
@@ -240,7 +243,7 @@ fn cover_blocks<S: Simd, D: DepthFunction, T: Target<S>>(
             if nearest < *behind {
                 continue;
             }
-            if inner && farthest > *behind {
+            if T::OCCLUDES && inner && farthest > *behind {
                 *behind = farthest;
             }
             for y in rows.clone() {

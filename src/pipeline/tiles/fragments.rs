@@ -210,8 +210,8 @@ pub fn triangle((chunk, index): Entry, bins: &Bins) -> (&Chunk, &Triangle) {
 }
 
 /// The pixel's centre if the triangle covers it, else its covered sample nearest to the centre: so
-/// the weights of the corners are never negative.
-fn shading_point(t: &Triangle, mask: u16, corner: [i32; 2], order: &SampleOrder) -> [i32; 2] {
+/// the weights of the corners are never negative. `corner` is the pixel's upper left, in sub-pixels.
+pub(super) fn shading_point(t: &Triangle, mask: u16, corner: [i32; 2], order: &SampleOrder) -> [i32; 2] {
     let centre = corner.map(|c| c + 128);
     if contains(t, centre) {
         return centre;

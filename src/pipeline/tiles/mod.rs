@@ -1,26 +1,32 @@
 //! Tiles: binned triangles in, finished pixels out. Each tile is one independent task.
 //!
-//! Visibility first: every triangle of the tile goes into a buffer of ids and depths ([`cover`]).
-//! What is visible becomes fragments ([`fragments`]), each shaded once, and the samples of a pixel
-//! are resolved to its colour.
+//! Visibility first: every opaque triangle of the tile goes into a buffer of ids and depths ([`cover`]),
+//! then those with holes ([`cut_out`]). What is visible becomes fragments ([`fragments`]), each shaded
+//! once, and the samples of a pixel are resolved to its colour. What is blended goes over that, layer
+//! by layer ([`blend`]). A tile that has no such triangles goes without.
 
+pub mod blend;
 pub mod cover;
+pub mod cut_out;
 mod depth;
 pub mod fragments;
+pub mod layers;
 
 use super::geometry::Bins;
 use super::geometry::bin::TileGrid;
 use super::samples;
 use super::shade::varyings::{Records, ShadowFrame, Source};
 use super::shade::{self, BLOCK, Lighting};
-use super::stats::TileTimes;
+use super::stats::{Clock, TileTimes};
 use super::work::{Cancelled, Work};
 use super::{resolve, sky};
+use crate::math::View;
 use crate::math::simd::*;
-use crate::plan::{Draw, Item};
+use crate::plan::{Draw, Item, ItemTest, Opacity};
+use blend::{Behind, Canvas};
 use cover::{BlockDepths, IdTarget, Region, Visibility};
 use fragments::{Entry, Fragments, SampleOrder, triangle};
-use std::time::Instant;
+use layers::{Layers, Opaque, TileList};
 
 /// log2 of a tile's side: smaller with many samples, so that a tile's buffers stay in L2.
 #[must_use]
@@ -37,6 +43,12 @@ impl Region {
         let size = [grid.width - first[0], grid.height - first[1]].map(|n| n.min(side) as usize);
         let origin = [0, 1].map(|axis| grid.origin[axis] + first[axis].cast_signed() * 256);
         Self { origin, size }
+    }
+
+    /// Screen position of the upper left corner of a pixel of this tile, in sub-pixels.
+    #[must_use]
+    pub fn corner(&self, pixel: [usize; 2]) -> [i32; 2] {
+        [0, 1].map(|axis| self.origin[axis] + 256 * i32::try_from(pixel[axis]).expect("a tile is small"))
     }
 
     /// Screen position of the centre of a pixel of this tile.
@@ -80,12 +92,17 @@ pub fn split<'a, P>(pixels: &'a mut [P], grid: &TileGrid) -> Vec<Tile<'a, P>> {
 #[derive(Default)]
 pub struct Scratch {
     list: Vec<Entry>,
+    /// Ids of the tile's triangles with holes, and of those that are blended.
+    cut_outs: Vec<u32>,
+    blended: Vec<u32>,
     samples: Visibility,
     blocks: BlockDepths,
+    layers: Layers,
     fragments: Fragments,
     colors: [Vec<f32>; 3],
     sky: [Vec<f32>; 3],
     shade: shade::Scratch,
+    blend: blend::Scratch,
 }
 
 /// What every tile of a frame shares.
@@ -106,8 +123,40 @@ pub struct Shared<'a> {
     pub samples: u32,
 }
 
+impl<'a> Shared<'a> {
+    /// What the triangles of a draw look like.
+    fn source(&self, draw: u32) -> Source<'_> {
+        let draw = &self.draws[draw as usize];
+        let item = &self.items[draw.item as usize];
+        Source::new(item, &draw.surface, &self.frames, self.lighting.view, self.lighting.anchor)
+    }
+
+    /// What decides on triangles with holes.
+    fn tests(&self) -> Tests<'a> {
+        Tests { draws: self.draws, items: self.items, view: self.lighting.view }
+    }
+}
+
+/// What decides on triangles with holes.
+pub struct Tests<'a> {
+    /// The draws of the plan.
+    pub draws: &'a [Draw],
+    /// The items of the plan.
+    pub items: &'a [Item],
+    /// The camera.
+    pub view: &'a View,
+}
+
+impl<'a> Tests<'a> {
+    fn of(&self, draw: u32) -> ItemTest<'a> {
+        let draw = &self.draws[draw as usize];
+        let test = draw.alpha_test.as_ref().expect("the plan gives every cut-out its test");
+        ItemTest { item: &self.items[draw.item as usize], test }
+    }
+}
+
 impl Scratch {
-    /// Lists the tile's triangles in submission order and finds what each sample sees.
+    /// Lists the tile's triangles in submission order and finds what each sample sees of the opaque ones.
     pub fn find_visible(&mut self, level: Level, bins: &Bins, place: [u32; 2], samples: u32) {
         let grid = &bins.grid;
         bins.list(place, &mut self.list);
@@ -116,16 +165,71 @@ impl Scratch {
         self.samples.clear(side, pattern.len());
         self.blocks.clear(side);
         let region = Region::of_tile(grid, place[0], place[1]);
+        self.cut_outs.clear();
+        self.blended.clear();
         let triangles = self.list.iter().zip(1..).map(|(&entry, id)| (triangle(entry, bins).1, id));
         dispatch!(level, simd => {
             for (t, id) in triangles {
-                let mut target = IdTarget { samples: &mut self.samples, id };
-                cover::cover(simd, t, &region, side, pattern, &mut self.blocks, &mut target);
+                match t.opacity() {
+                    Opacity::Opaque => {
+                        let mut target = IdTarget { samples: &mut self.samples, id };
+                        cover::cover(simd, t, &region, side, pattern, &mut self.blocks, &mut target);
+                    }
+                    Opacity::CutOut => self.cut_outs.push(id),
+                    Opacity::Blended => self.blended.push(id),
+                }
             }
         });
     }
 
-    /// What each sample of the tile sees, as [`Scratch::find_visible`] left it.
+    /// Finds what samples see of the triangles with holes of the tile that [`Scratch::find_visible`] left.
+    pub fn find_cut_outs(
+        &mut self,
+        level: Level,
+        bins: &Bins,
+        place: [u32; 2],
+        order: &SampleOrder,
+        tests: &Tests,
+    ) {
+        if self.cut_outs.is_empty() {
+            return;
+        }
+        let region = Region::of_tile(&bins.grid, place[0], place[1]);
+        let tile =
+            TileList { bins, list: &self.list, region: &region, side: 1 << bins.grid.tile_shift, order };
+        cut_out::draw(
+            level,
+            &tile,
+            &self.cut_outs,
+            |draw| tests.of(draw),
+            tests.view,
+            &mut self.samples,
+            &self.blocks,
+            &mut self.layers,
+            &mut self.shade,
+        );
+    }
+
+    /// Draws the tile's blended triangles over its resolved colours.
+    fn blend(
+        &mut self,
+        work: &Work,
+        shared: &Shared,
+        region: &Region,
+        order: &SampleOrder,
+        coverage: Option<&mut [f32]>,
+    ) -> TileTimes {
+        let side = 1 << shared.bins.grid.tile_shift;
+        let tile = TileList { bins: shared.bins, list: &self.list, region, side, order };
+        let opaque = Opaque { samples: &self.samples, blocks: &self.blocks };
+        let behind = Behind { opaque, fragments: &self.fragments, sky: &self.sky };
+        let mut canvas = Canvas { colors: &mut self.colors, coverage };
+        let scratch = (&mut self.blend, &mut self.shade);
+        blend::draw(work, shared, &tile, &self.blended, &behind, &mut canvas, scratch)
+    }
+
+    /// What each sample of the tile sees, as [`Scratch::find_visible`] and
+    /// [`Scratch::find_cut_outs`] left it.
     #[must_use]
     pub fn visibility(&self) -> &Visibility {
         &self.samples
@@ -174,7 +278,7 @@ pub fn draw<P: Send>(
     let nearest = samples::nearest_to_centre(shared.samples);
     let order = SampleOrder { pattern: samples::pattern(shared.samples), nearest: &nearest };
     let times = work.map(tiles, Scratch::default, |scratch, tile| {
-        draw_tile(work.level, shared, &order, scratch, tile, &write)
+        draw_tile(work, shared, &order, scratch, tile, &write)
     })?;
     let mut total = TileTimes::default();
     times.iter().for_each(|t| total.add(t));
@@ -182,7 +286,7 @@ pub fn draw<P: Send>(
 }
 
 fn draw_tile<P>(
-    level: Level,
+    work: &Work,
     shared: &Shared,
     order: &SampleOrder,
     scratch: &mut Scratch,
@@ -191,11 +295,13 @@ fn draw_tile<P>(
 ) -> TileTimes {
     let mut clock = Clock::start();
     let mut times = TileTimes::default();
+    let level = work.level;
     let grid = &shared.bins.grid;
     let side = 1usize << grid.tile_shift;
     let region = Region::of_tile(grid, tile.place[0], tile.place[1]);
 
     scratch.find_visible(level, shared.bins, tile.place, shared.samples);
+    scratch.find_cut_outs(level, shared.bins, tile.place, order, &shared.tests());
     scratch.fragments.collect(level, &scratch.samples, &region, side, order, &scratch.list, shared.bins);
     times.raster = clock.lap();
 
@@ -213,9 +319,15 @@ fn draw_tile<P>(
 
     resolve::resolve(&scratch.fragments, &scratch.sky, shared.samples, side, &mut scratch.colors);
     let transparent = shared.background.is_transparent();
-    let alpha = transparent.then(|| resolve::coverage(&scratch.fragments, shared.samples, side));
-    write(&Resolved { colors: &scratch.colors, alpha: alpha.as_deref(), side }, tile);
+    let mut alpha = transparent.then(|| resolve::coverage(&scratch.fragments, shared.samples, side));
     times.resolve = clock.lap();
+
+    if !scratch.blended.is_empty() {
+        times.add(&scratch.blend(work, shared, &region, order, alpha.as_deref_mut()));
+        clock.lap();
+    }
+    write(&Resolved { colors: &scratch.colors, alpha: alpha.as_deref(), side }, tile);
+    times.resolve += clock.lap();
     times
 }
 
@@ -223,10 +335,7 @@ fn draw_tile<P>(
 fn shade_fragments(level: Level, shared: &Shared, scratch: &mut Scratch) {
     let mut out = [[0.0; BLOCK]; 3];
     for run in &scratch.fragments.runs {
-        let draw = &shared.draws[run.draw as usize];
-        let item = &shared.items[draw.item as usize];
-        let source =
-            Source::new(item, &draw.surface, &shared.frames, shared.lighting.view, shared.lighting.anchor);
+        let source = shared.source(run.draw);
         let mut records = Records::new(&source);
         for &id in &scratch.fragments.visible[run.first[0]..run.end[0]] {
             let (chunk, t) = triangle(scratch.list[id as usize - 1], shared.bins);
@@ -248,22 +357,5 @@ fn shade_fragments(level: Level, shared: &Shared, scratch: &mut Scratch) {
                 }
             }
         }
-    }
-}
-
-/// A stopwatch that is read lap by lap.
-struct Clock(Instant);
-
-impl Clock {
-    fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    /// Seconds since the last lap.
-    fn lap(&mut self) -> f64 {
-        let now = Instant::now();
-        let seconds = (now - self.0).as_secs_f64();
-        self.0 = now;
-        seconds
     }
 }

@@ -114,6 +114,28 @@ fn textures_shadows_and_samples_are_the_same_to_the_byte() {
     assert_same("orthographic", &scene, &[1, 4].map(|n| sized(131, 77, samples(n))));
 }
 
+/// The busy scene with everything transparent in its own way.
+fn glassy() -> Value {
+    let mut document = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
+    document["materials"]["shiny"]["opacity"] = json!(0.7);
+    document["materials"]["shiny"]["double_sided"] = json!(true);
+    document["materials"]["leaf"] =
+        json!({ "opacity_map": "noise", "alpha_cutoff": 0.4, "double_sided": true });
+    document["materials"]["mist"] = json!({ "opacity_map": "noise", "opacity": 0.8 });
+    document["instances"]["ball"]["material"] = json!("mist");
+    document["instances"]["leaf"] =
+        json!({ "mesh": "ball", "material": "leaf", "translation": [0.9, 0.9, 1.0] });
+    document
+}
+
+#[test]
+fn transparency_is_the_same_to_the_byte() {
+    let scene = scene_with(&glassy(), &noise());
+    assert_same("transparency", &scene, &[1, 2, 4, 8, 16].map(|n| sized(131, 77, samples(n))));
+    let outputs = [Output::Depth, Output::Normal, Output::Instance];
+    assert_same("transparency", &scene, &outputs.map(|o| sized(131, 77, output(o))));
+}
+
 #[test]
 fn a_frame_is_the_same_in_every_run_and_beside_others() {
     let scene = scene_with(&busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] })), &noise());

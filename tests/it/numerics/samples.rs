@@ -122,6 +122,7 @@ fn worst_excess(item: &Item, view: &View, samples: u32) -> (f64, usize) {
         diffuse_map: None,
         emissive_map: None,
         relief: None,
+        alpha: None,
         vertex_colors: true,
         lit: false,
         receives_shadow: false,

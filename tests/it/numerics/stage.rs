@@ -11,7 +11,7 @@ use rasterd::pipeline::geometry::{self, Bins};
 use rasterd::pipeline::tiles::cover::{self, BlockDepths, Region, Target};
 use rasterd::pipeline::tiles::{Scratch, tile_shift};
 use rasterd::pipeline::{Work, samples};
-use rasterd::plan::{Item, Slot};
+use rasterd::plan::{Item, Opacity, Slot};
 use rasterd::scene::Cull;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, LazyLock};
@@ -93,13 +93,13 @@ pub fn soup(triangles: &[[DVec3; 3]]) -> Mesh {
 
 /// A mesh where it was made, both of its sides seen.
 pub fn two_sided(mesh: Mesh) -> Item {
-    let slot = Slot { draw: 0, cull: Cull::None };
+    let slot = Slot { draw: 0, cull: Cull::None, opacity: Opacity::Opaque };
     Item {
         mesh: Arc::new(mesh),
         linear: DMat3::IDENTITY,
         origin: DVec3::ZERO,
         mirrored: false,
-        slots: vec![slot],
+        slots: vec![Some(slot)],
     }
 }
 

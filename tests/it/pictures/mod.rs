@@ -10,3 +10,4 @@ mod sampler;
 mod shadows;
 mod sky;
 mod textures;
+mod transparency;

@@ -18,7 +18,7 @@ impl Triangle {
 }
 
 fn slot(draw: u32, cull: Cull) -> Slot {
-    Slot { draw, cull }
+    Slot { draw, cull, opacity: Opacity::Opaque }
 }
 
 fn corner() -> impl Strategy<Value = [i32; 2]> {
