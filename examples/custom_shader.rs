@@ -4,6 +4,8 @@
 //! that moves the vertices of a grid, and a pixel part that paints three tones, writes two targets, and
 //! discards what the wind has torn off.
 
+use glam::dcamera::rh::proj::directx::perspective_infinite_reverse;
+use glam::dcamera::rh::view::look_at_mat4;
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use rasterd::encode;
 use rasterd::math::simd::Level;
@@ -124,9 +126,9 @@ fn grid() -> Vec<[u32; 3]> {
 /// [`Cancelled`].
 pub fn draw(work: &Work) -> Result<[Frame; 2], Cancelled> {
     let aspect = f64::from(WIDTH) / f64::from(HEIGHT);
-    let view = DMat4::look_at_rh(DVec3::new(0.45, 0.85, 2.6), DVec3::new(0.78, 0.46, 0.0), DVec3::Y);
+    let view = look_at_mat4(DVec3::new(0.45, 0.85, 2.6), DVec3::new(0.78, 0.46, 0.0), DVec3::Y);
     // Reversed depth and an infinite far plane, as the pipeline has it.
-    let projection = DMat4::perspective_infinite_reverse_rh(0.52, aspect, 0.1);
+    let projection = perspective_infinite_reverse(0.52, aspect, 0.1);
     let flag = Flag { clip_from_world: projection * view, seconds: 0.4 };
 
     let (width, height) = (WIDTH * SCALE, HEIGHT * SCALE);

@@ -5,6 +5,8 @@
 //! textured box, and an inset that looks into the box from above. It writes `pipeline.png`,
 //! `pipeline-depth.png` and `pipeline-ids.png`.
 
+use glam::dcamera::rh::proj::directx::perspective_infinite_reverse;
+use glam::dcamera::rh::view::look_at_mat4;
 use glam::{DMat4, DVec3, Vec3};
 use rasterd::encode;
 use rasterd::math::simd::Level;
@@ -112,8 +114,8 @@ impl Program for Textured {
 /// Draws the triangles and the box as `eye` sees them.
 fn draw_from(eye: DVec3, targets: &mut Targets, state: &State, work: &Work) -> Result<(), Cancelled> {
     let aspect = f64::from(state.viewport.width) / f64::from(state.viewport.height);
-    let view = DMat4::look_at_rh(eye, DVec3::new(0.5, 0.05, 0.0), DVec3::Y);
-    let clip_from_world = DMat4::perspective_infinite_reverse_rh(0.7, aspect, 0.1) * view;
+    let view = look_at_mat4(eye, DVec3::new(0.5, 0.05, 0.0), DVec3::Y);
+    let clip_from_world = perspective_infinite_reverse(0.7, aspect, 0.1) * view;
 
     let triangles = DrawCall {
         program: &Colored { clip_from_world },

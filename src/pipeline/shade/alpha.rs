@@ -32,7 +32,7 @@ fn sample(level: Level, alpha: &Alpha, varyings: &Varyings, count: usize, out: &
     let maps = [(&alpha.opacity_map, 0), (&alpha.diffuse_map, 3)];
     for (map, channel) in maps.into_iter().filter_map(|(map, channel)| Some((map.as_ref()?, channel))) {
         let mut texels = [[0.0; BLOCK]; 4];
-        texture::sample(level, map, varyings, count, &mut texels);
+        texture::sample(level, map, &varyings.texture, count, &mut texels);
         for (factor, texel) in out.iter_mut().zip(&texels[channel]) {
             *factor *= texel;
         }

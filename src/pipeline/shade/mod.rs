@@ -152,7 +152,7 @@ fn multiply(
     out: &mut [[f32; BLOCK]; 3],
 ) {
     let mut texels = [[0.0; BLOCK]; 4];
-    texture::sample(level, map, varyings, count, &mut texels);
+    texture::sample(level, map, &varyings.texture, count, &mut texels);
     for (channel, texel) in out.iter_mut().zip(&texels) {
         for (factor, t) in channel.iter_mut().zip(texel) {
             *factor *= t;

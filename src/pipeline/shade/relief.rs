@@ -32,7 +32,7 @@ pub fn tilt(level: Level, relief: &Relief, varyings: &mut Varyings, count: usize
 /// Takes each normal to that of a normal map: red along u, green along v, blue along the normal.
 fn follow_normals(level: Level, map: &Texture, varyings: &mut Varyings, count: usize) {
     let mut texels = [[0.0; BLOCK]; 4];
-    texture::sample_normals(level, map, varyings, count, &mut texels);
+    texture::sample_normals(level, map, &varyings.texture, count, &mut texels);
     // A picture that is laid on turned round has its own directions turned round.
     let [turn_u, turn_v] = map.scale.map(|scale| if scale < 0.0 { -1.0 } else { 1.0 });
     dispatch!(level, simd => {
@@ -61,7 +61,7 @@ fn follow_normals(level: Level, map: &Texture, varyings: &mut Varyings, count: u
 /// "Bump Mapping Unparametrized Surfaces on the GPU", 2010.
 fn follow_heights(level: Level, heights: &Heights, varyings: &mut Varyings, count: usize) {
     let mut slopes = [[0.0; BLOCK]; 2];
-    texture::sample_slopes(level, &heights.map, varyings, count, &mut slopes);
+    texture::sample_slopes(level, &heights.map, &varyings.texture, count, &mut slopes);
     // A scale beyond all slopes stays a number.
     let scale = heights.scale.clamp(-1e30, 1e30);
     dispatch!(level, simd => {

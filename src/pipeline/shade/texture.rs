@@ -6,11 +6,25 @@ mod heights;
 pub use heights::sample_slopes;
 
 use super::BLOCK;
-use super::varyings::Varyings;
 use crate::math::simd::*;
 use crate::math::{approx, colour, round_to_f32};
 use crate::model::texture::{ColorSpace, Filter, Texture, Wrap};
 use std::sync::LazyLock;
+
+/// Where a block of fragments lies in a texture.
+#[derive(Clone, Debug)]
+pub struct Coordinates {
+    /// u and v, the latter running up.
+    pub uv: [[f32; BLOCK]; 2],
+    /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y in units per pixel, y running down.
+    pub per_pixel: [[f32; BLOCK]; 4],
+}
+
+impl Default for Coordinates {
+    fn default() -> Self {
+        Self { uv: [[0.0; BLOCK]; 2], per_pixel: [[0.0; BLOCK]; 4] }
+    }
+}
 
 /// Linear values of the 256 sRGB codes.
 pub static SRGB_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
@@ -41,11 +55,11 @@ static SRGB_SNORM: LazyLock<[f32; 256]> = LazyLock::new(|| {
 pub fn sample(
     level: Level,
     texture: &Texture,
-    varyings: &Varyings,
+    coordinates: &Coordinates,
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
 ) {
-    sample_with(level, &Sampler::of_colors(texture), varyings, count, out);
+    sample_with(level, &Sampler::of_colors(texture), coordinates, count, out);
 }
 
 /// Samples a normal map: x along u, y along v, z along the normal, filtered after decoding and so not
@@ -56,33 +70,33 @@ pub fn sample(
 pub fn sample_normals(
     level: Level,
     texture: &Texture,
-    varyings: &Varyings,
+    coordinates: &Coordinates,
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
 ) {
-    sample_with(level, &Sampler::of_normals(texture), varyings, count, out);
+    sample_with(level, &Sampler::of_normals(texture), coordinates, count, out);
 }
 
 fn sample_with(
     level: Level,
     sampler: &Sampler,
-    varyings: &Varyings,
+    coordinates: &Coordinates,
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
 ) {
-    dispatch!(level, simd => sample_kernel(simd, sampler, varyings, count, out));
+    dispatch!(level, simd => sample_kernel(simd, sampler, coordinates, count, out));
 }
 
 #[inline(always)]
 fn sample_kernel<S: Simd>(
     simd: S,
     sampler: &Sampler,
-    varyings: &Varyings,
+    coordinates: &Coordinates,
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
 ) {
     for at in (0..count).step_by(LANES) {
-        let [u, v, level] = place(simd, sampler.texture, varyings, at);
+        let [u, v, level] = place(simd, sampler.texture, coordinates, at);
         for lane in 0..LANES.min(count - at) {
             let texel = sampler.sample(u[lane], v[lane], level[lane]);
             for c in 0..4 {
@@ -94,17 +108,17 @@ fn sample_kernel<S: Simd>(
 
 /// Coordinates of eight fragments in the picture, and their levels of detail.
 #[inline(always)]
-fn place<S: Simd>(simd: S, texture: &Texture, varyings: &Varyings, at: usize) -> [f32x8<S>; 3] {
+fn place<S: Simd>(simd: S, texture: &Texture, coordinates: &Coordinates, at: usize) -> [f32x8<S>; 3] {
     let coordinate = always(
         #[inline(always)]
         |axis: usize| {
-            f32x8::from_slice(simd, &varyings.uv[axis][at..at + LANES]) * round_to_f32(texture.scale[axis])
+            f32x8::from_slice(simd, &coordinates.uv[axis][at..at + LANES]) * round_to_f32(texture.scale[axis])
                 + offset(texture, axis)
         },
     );
     let level = match texture.filter {
         Filter::Nearest => f32x8::splat(simd, 0.0),
-        _ => level_of_detail(simd, texture, varyings, at),
+        _ => level_of_detail(simd, texture, coordinates, at),
     };
     [coordinate(0), coordinate(1), level]
 }
@@ -120,14 +134,14 @@ fn offset(texture: &Texture, axis: usize) -> f32 {
 /// `log2` of the texels that a pixel steps over in the direction in which they are most, clamped to
 /// the levels there are. Source: OpenGL 4.6 specification, 8.14.1.
 #[inline(always)]
-fn level_of_detail<S: Simd>(simd: S, texture: &Texture, varyings: &Varyings, at: usize) -> f32x8<S> {
+fn level_of_detail<S: Simd>(simd: S, texture: &Texture, coordinates: &Coordinates, at: usize) -> f32x8<S> {
     let size = [texture.image.width, texture.image.height].map(f64::from);
     let texels = always(
         #[inline(always)]
         |field: usize| {
             let axis = field % 2;
             let scale = round_to_f32(texture.scale[axis] * size[axis]);
-            let d = f32x8::from_slice(simd, &varyings.uv_per_pixel[field][at..at + LANES]) * scale;
+            let d = f32x8::from_slice(simd, &coordinates.per_pixel[field][at..at + LANES]) * scale;
             d * d
         },
     );

@@ -25,7 +25,7 @@ fn texture_coordinates_stay_within_sixteen_roundings_at_any_ratio_of_distances()
                 let corner = t.corners().map(|c| 3 * t.source as usize + c);
                 let e = weights(t, point);
                 let share = [0, 1, 2].map(|i| e[i] as f64 / -positions[corner[i]].z);
-                for (axis, value) in varyings.uv.iter().enumerate() {
+                for (axis, value) in varyings.texture.uv.iter().enumerate() {
                     let value = f64::from(value[lane]);
                     let at = corner.map(|c| uvs[c][axis]);
                     let exact = (0..3).map(|i| share[i] * at[i]).sum::<f64>() / share.iter().sum::<f64>();
@@ -78,7 +78,7 @@ fn derivatives_of_texture_coordinates_give_the_level_to_a_256th() {
                         let value = corner.map(|at| uvs[at][c] - uvs[corner[0]][c]);
                         (sum(de, value) - sum(here, value) / d * sum(de, [1.0; 3])) / d
                     });
-                    let drawn = [0, 1].map(|c| f64::from(varyings.uv_per_pixel[2 * axis + c][lane]));
+                    let drawn = [0, 1].map(|c| f64::from(varyings.texture.per_pixel[2 * axis + c][lane]));
                     let length = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
                     [length(along), length(drawn)]
                 };

@@ -5,8 +5,8 @@ use crate::measure::at_most;
 use fearless_simd::Level;
 use rasterd::limits::Limits;
 use rasterd::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
-use rasterd::pipeline::shade::texture::sample;
-use rasterd::pipeline::shade::{BLOCK, varyings::Varyings};
+use rasterd::pipeline::shade::texture::{Coordinates, sample};
+use rasterd::pipeline::shade::BLOCK;
 use rasterd::scene::{Document, compile};
 use serde_json::json;
 use std::sync::Arc;
@@ -23,13 +23,12 @@ fn image(width: u32, height: u32) -> Arc<Image> {
 
 /// What a texture shows at a coordinate, seen at its own size: red, green, blue, alpha.
 fn sampled(level: Level, texture: &Texture, u: f32, v: f32, step: f32) -> [f32; 4] {
-    let varyings = Varyings {
+    let coordinates = Coordinates {
         uv: [[u; BLOCK], [v; BLOCK]],
-        uv_per_pixel: [[step; BLOCK], [0.0; BLOCK], [0.0; BLOCK], [step; BLOCK]],
-        ..Varyings::default()
+        per_pixel: [[step; BLOCK], [0.0; BLOCK], [0.0; BLOCK], [step; BLOCK]],
     };
     let mut out = [[f32::NAN; BLOCK]; 4];
-    sample(level, texture, &varyings, 1, &mut out);
+    sample(level, texture, &coordinates, 1, &mut out);
     out.map(|channel| channel[0])
 }
 

@@ -1,11 +1,10 @@
 //! Height maps: slopes from differences of filtered texels.
 
-use super::{Sampler, address, index, place, whole};
+use super::{Coordinates, Sampler, address, index, place, whole};
 use crate::math::round_to_f32;
 use crate::math::simd::*;
 use crate::model::texture::{Filter, Texture};
 use crate::pipeline::shade::BLOCK;
-use crate::pipeline::shade::varyings::Varyings;
 
 /// Samples the slopes of a height map, its red channel in linear light: ∂h/∂u and ∂h/∂v in heights a
 /// unit of the mesh's texture coordinates.
@@ -16,25 +15,25 @@ use crate::pipeline::shade::varyings::Varyings;
 pub fn sample_slopes(
     level: Level,
     texture: &Texture,
-    varyings: &Varyings,
+    coordinates: &Coordinates,
     count: usize,
     out: &mut [[f32; BLOCK]; 2],
 ) {
-    dispatch!(level, simd => slopes_kernel(simd, texture, varyings, count, out));
+    dispatch!(level, simd => slopes_kernel(simd, texture, coordinates, count, out));
 }
 
 #[inline(always)]
 fn slopes_kernel<S: Simd>(
     simd: S,
     texture: &Texture,
-    varyings: &Varyings,
+    coordinates: &Coordinates,
     count: usize,
     out: &mut [[f32; BLOCK]; 2],
 ) {
     let sampler = Sampler::of_colors(texture);
     let scale = texture.scale.map(round_to_f32);
     for at in (0..count).step_by(LANES) {
-        let [u, v, level] = place(simd, texture, varyings, at);
+        let [u, v, level] = place(simd, texture, coordinates, at);
         for lane in 0..LANES.min(count - at) {
             let slopes = sampler.slopes(u[lane], v[lane], level[lane]);
             for axis in 0..2 {

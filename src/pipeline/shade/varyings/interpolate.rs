@@ -3,6 +3,7 @@
 use super::Source;
 use super::records::{AREA, EDGES, ORIGIN, Records, SCALE, SHADOW};
 use crate::math::simd::*;
+use crate::pipeline::shade::texture::Coordinates;
 use crate::pipeline::shade::{BLOCK, Fragment};
 
 /// Interpolated attributes of a block of fragments. Lanes beyond its length hold copies of the last.
@@ -11,10 +12,8 @@ pub struct Varyings {
     pub normal: [[f32; BLOCK]; 3],
     /// Position relative to [`anchor`](crate::pipeline::shade::anchor), in world axes.
     pub position: [[f32; BLOCK]; 3],
-    /// Texture coordinates.
-    pub uv: [[f32; BLOCK]; 2],
-    /// ∂u/∂x, ∂v/∂x, ∂u/∂y, ∂v/∂y in units per pixel.
-    pub uv_per_pixel: [[f32; BLOCK]; 4],
+    /// Texture coordinates and their derivatives.
+    pub texture: Coordinates,
     /// Direction in which u grows, in world axes; about a unit vector, neither exactly so nor exactly in
     /// the surface, and zero where the texture has no direction. Of a back face: negated.
     pub along_u: [[f32; BLOCK]; 3],
@@ -33,8 +32,7 @@ impl Default for Varyings {
         Self {
             normal: [[0.0; BLOCK]; 3],
             position: [[0.0; BLOCK]; 3],
-            uv: [[0.0; BLOCK]; 2],
-            uv_per_pixel: [[0.0; BLOCK]; 4],
+            texture: Coordinates::default(),
             along_u: [[0.0; BLOCK]; 3],
             along_v: [[0.0; BLOCK]; 3],
             uv_per_world: [[0.0; BLOCK]; 2],
@@ -226,13 +224,13 @@ fn interpolate_eight<S: Simd>(
                 // texture repeats every second unit), so that f32 keeps the digits that count.
                 coordinate -= (coordinate * 0.5).floor() * 2.0;
             }
-            narrow(coordinate).store_slice(&mut out.uv[c][at..at + LANES]);
+            narrow(coordinate).store_slice(&mut out.texture.uv[c][at..at + LANES]);
             let field = layout.uv + 3 * c;
             let cross = lanes.single(simd, field + 2);
             let along_x = (lanes.single(simd, field) + cross * fy) / squared;
             let along_y = (lanes.single(simd, field + 1) - cross * fx) / squared;
-            along_x.store_slice(&mut out.uv_per_pixel[c][at..at + LANES]);
-            along_y.store_slice(&mut out.uv_per_pixel[2 + c][at..at + LANES]);
+            along_x.store_slice(&mut out.texture.per_pixel[c][at..at + LANES]);
+            along_y.store_slice(&mut out.texture.per_pixel[2 + c][at..at + LANES]);
         }
     }
 }
