@@ -193,3 +193,6 @@ fn specular_lobe<S: Simd>(simd: S, normal: Vec3x8<S>, half: Vec3x8<S>, shininess
     let lobe = approx::exp2(approx::log2_1p(x, d) * shininess);
     if shininess == 0.0 { one } else { cosine.simd_gt(zero).select(lobe, zero) }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! Texture coordinates and their derivatives at every ratio of distances.
 
 use super::interpolated::{U, corners, document, look, weights};
-use crate::draw::{plan, scene};
+use crate::draw::{Picture, plan, scene};
 use crate::measure::at_most;
 use crate::random::Random;
 use rasterd::pipeline::geometry::setup::NOT_CLIPPED;
@@ -87,6 +87,64 @@ fn derivatives_of_texture_coordinates_give_the_level_to_a_256th() {
             });
             let case = format!("B24 w ratio {ratio:e}, {extent} px, {turns:e} turns, {looked} points");
             at_most(&case, "error of the level", worst, 1.0 / 256.0);
+        }
+    }
+}
+
+/// Where a coordinate is in a picture that repeats every two units, between −1 and 1 from another.
+fn apart(a: f64, b: f64) -> f64 {
+    (a - b) - ((a - b) / 2.0).round() * 2.0
+}
+
+#[test]
+fn b22_coordinates_around_a_million_read_the_texel_that_they_name() {
+    for offset in [0.0, 1e6, 1e6 + 1.0, 1e7, -1e7] {
+        for (wrap, span) in [("repeat", 1.0), ("repeat", 32.0), ("mirror", 1.0), ("mirror", 32.0)] {
+            let mut random = Random::new("B22", 0xb22);
+            let triangles: Vec<_> = (0..400).map(|_| corners(&mut random, 1e3, 1000.0)).collect();
+            let positions = triangles.as_flattened();
+            let uvs: Vec<_> =
+                positions.iter().map(|_| [0; 2].map(|_| offset + random.between(0.0, span))).collect();
+            let mut document = document(positions, json!({ "uvs": uvs }));
+            document["textures"]["t"]["wrap"] = json!(wrap);
+            let plan = plan(&scene(&document), &FrameRequest::default());
+            let mut worst = 0.0f64;
+            let looked = look(&plan, &mut random, |t, point, lane, varyings| {
+                let corner = t.corners().map(|c| 3 * t.source as usize + c);
+                let e = weights(t, point);
+                let share = [0, 1, 2].map(|i| e[i] as f64 / -positions[corner[i]].z);
+                for (axis, value) in varyings.uv.iter().enumerate() {
+                    let at = corner.map(|c| uvs[c][axis]);
+                    let exact = (0..3).map(|i| share[i] * at[i]).sum::<f64>() / share.iter().sum::<f64>();
+                    worst = worst.max(apart(f64::from(value[lane]), exact).abs());
+                }
+            });
+            assert!(looked > 500, "{looked} points");
+            let case = format!("B22 {offset:e}, {wrap}, span {span}");
+            at_most(&case, "texels of 1024", worst * 1024.0, 1.0 / 256.0);
+        }
+    }
+}
+
+#[test]
+fn b22_a_picture_is_the_same_a_million_turns_on() {
+    let drawn = |turns: f64, wrap: &str| {
+        let uvs = [[-1.3, 0.2], [2.1, 0.4], [0.3, 3.2]].map(|uv: [f64; 2]| uv.map(|c| c + turns));
+        let positions =
+            [[-1.5, -1.2, -2.0], [1.7, -1.0, -3.0], [0.1, 1.6, -2.2]].map(glam::DVec3::from_array);
+        let mut document = document(&positions, json!({ "uvs": uvs }));
+        document["textures"]["t"]["wrap"] = json!(wrap);
+        document["materials"]["m"]["shading"] = json!("unlit");
+        Picture::of(&document)
+    };
+    for wrap in ["repeat", "mirror"] {
+        let near = drawn(0.0, wrap);
+        for turns in [1e6, 1e7] {
+            let far = drawn(turns, wrap);
+            let apart = |(a, b): (&[u8; 4], &[u8; 4])| (0..3).map(|c| a[c].abs_diff(b[c])).max();
+            let worst = near.pixels.iter().zip(&far.pixels).filter_map(apart).max();
+            // 1/256 of a texel is worth 1/256 of the difference of two texels.
+            at_most(&format!("B22 {turns:e} {wrap}"), "codes", worst.map_or(0.0, f64::from), 1.0);
         }
     }
 }

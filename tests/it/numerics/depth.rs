@@ -1,8 +1,8 @@
 //! Depth: near and far surfaces in order, and exact over a triangle however far its corners lie apart
-//! (B13, B14).
+//! (B13 – B15).
 
 use super::stage::*;
-use crate::measure::{U, at_most};
+use crate::measure::{U, at_most, none_of};
 use crate::random::Random;
 use glam::DVec3;
 use rasterd::math::View;
@@ -172,4 +172,36 @@ fn b13_the_nearer_of_two_surfaces_wins_down_to_a_gap_of_four_roundings() {
             at_most(&case, "ties and swaps", wrong as f64, 0.0);
         }
     }
+}
+
+/// Two squares in one plane, cut along different diagonals. Which of them is seen where their depths
+/// differ by rounding is nobody's promise; where they are equal the first is, and that is checked
+/// against each square alone.
+#[test]
+fn b15_of_coplanar_squares_the_first_wins_wherever_depths_are_equal() {
+    let mut rng = Random::new("B15", 0x15);
+    let view = perspective_view(48, 48, 1.0, 0.1);
+    let (mut equal, mut speckled, mut wrong) = (0, 0, 0);
+    for i in 0..60 {
+        // Level ones have equal depths everywhere, tilted ones almost nowhere.
+        let tilt = if i % 3 == 0 { 0.0 } else { rng.between(-0.4, 0.4) };
+        let size = rng.between(0.5, 1.5);
+        let corner = |x: f64, y: f64| DVec3::new(x * size, y * size, -2.0 + x * tilt + y * tilt * 0.7);
+        let [a, b, c, d] = [corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)];
+        let (first, second) = ([[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]);
+        let alone = |square: &[[DVec3; 3]]| visible(&bins(two_sided(soup(square)), &view, 4), 4);
+        let (one, other) = (alone(&first), alone(&second));
+        let both_bins = bins(two_sided(soup(&[first, second].concat())), &view, 4);
+        let both = visible(&both_bins, 4);
+        for (at, source) in
+            both.sources(&both_bins).into_iter().enumerate().filter(|(_, source)| *source != 0)
+        {
+            let ahead = one.depth[at] >= other.depth[at];
+            equal += usize::from(one.depth[at] == other.depth[at]);
+            speckled += usize::from(one.depth[at] != other.depth[at]);
+            wrong += usize::from((source <= 2) != ahead);
+        }
+    }
+    assert!(speckled > 1000, "{speckled} samples are too few to show anything");
+    none_of("B15 coplanar squares", "samples that show the wrong one", wrong, equal);
 }

@@ -137,6 +137,32 @@ fn transparency_is_the_same_to_the_byte() {
 }
 
 #[test]
+fn relief_is_the_same_to_the_byte() {
+    let mut document = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
+    document["textures"]["bumps"] = json!({ "file": "noise.png", "color_space": "linear" });
+    document["materials"]["floor"]["bump_map"] = json!("bumps");
+    document["materials"]["floor"]["bump_scale"] = json!(0.2);
+    document["materials"]["shiny"]["normal_map"] = json!("bumps");
+    document["materials"]["shiny"]["bump_map"] = json!("tiles");
+    let scene = scene_with(&document, &noise());
+    let requests = [samples(1), samples(4), output(Output::Normal)];
+    assert_same("relief", &scene, &requests.map(|request| sized(131, 77, request)));
+}
+
+/// B15: which of two coplanar surfaces is seen may be speckled, but not differently every time.
+#[test]
+fn coplanar_surfaces_are_the_same_to_the_byte() {
+    let mut document = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
+    document["meshes"]["patch"] = json!({ "type": "triangles",
+        "positions": [[-2, 0, 2], [2, 0, 2.3], [2.2, 0, -2], [-1.9, 0, -2.1]],
+        "indices": [[0, 1, 3], [1, 2, 3]] });
+    document["materials"]["red"] = json!({ "shading": "unlit", "diffuse": [1, 0, 0] });
+    document["instances"]["patch"] = json!({ "mesh": "patch", "material": "red" });
+    let scene = scene_with(&document, &noise());
+    assert_same("coplanar", &scene, &[1, 4].map(|n| sized(131, 77, samples(n))));
+}
+
+#[test]
 fn a_frame_is_the_same_in_every_run_and_beside_others() {
     let scene = scene_with(&busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] })), &noise());
     let request = sized(131, 77, samples(4));

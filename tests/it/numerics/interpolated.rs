@@ -8,8 +8,9 @@ use rasterd::pipeline::geometry::bin::TileGrid;
 use rasterd::pipeline::geometry::setup::Triangle;
 use rasterd::pipeline::geometry::{self, Bins};
 use rasterd::pipeline::samples;
-use rasterd::pipeline::shade::Fragment;
+use rasterd::pipeline::shade::light::LightSource;
 use rasterd::pipeline::shade::varyings::{Records, Source, Varyings, interpolate};
+use rasterd::pipeline::shade::{self, BLOCK, Fragment, Lighting, shade_block};
 use rasterd::plan::Plan;
 use serde_json::{Value, json};
 
@@ -64,35 +65,71 @@ fn inside(t: &Triangle, random: &mut Random) -> Option<[i32; 2]> {
     weights(t, p).iter().all(|w| *w >= 0).then_some(p)
 }
 
+/// Calls `visit(triangle, points, source, records)` for every triangle of the plan, with points inside
+/// of it and a record of it alone.
+fn visit(
+    plan: &Plan,
+    random: &mut Random,
+    anchor: DVec3,
+    mut visit: impl FnMut(&Triangle, &[[i32; 2]], &Source, &Records),
+) {
+    let bins = bins(plan);
+    for chunk in &bins.chunks {
+        for t in &chunk.triangles {
+            let draw = &plan.draws[t.draw as usize];
+            let item = &plan.items[draw.item as usize];
+            let source = Source::new(item, &draw.surface, &[], &plan.view, anchor);
+            let mut records = Records::new(&source);
+            records.push(&source, t, chunk);
+            let points: Vec<_> = (0..POINTS).filter_map(|_| inside(t, random)).collect();
+            if !points.is_empty() {
+                visit(t, &points, &source, &records);
+            }
+        }
+    }
+}
+
+fn fragments(points: &[[i32; 2]]) -> Vec<Fragment> {
+    points.iter().map(|&[x, y]| Fragment { record: 0, target: 0, x, y }).collect()
+}
+
 /// Calls `check(triangle, point, lane, varyings)` for points inside every triangle of the plan.
 pub fn look(
     plan: &Plan,
     random: &mut Random,
     mut check: impl FnMut(&Triangle, [i32; 2], usize, &Varyings),
 ) -> usize {
-    let bins = bins(plan);
     let mut looked = 0;
-    for chunk in &bins.chunks {
-        for t in &chunk.triangles {
-            let draw = &plan.draws[t.draw as usize];
-            let source =
-                Source::new(&plan.items[draw.item as usize], &draw.surface, &[], &plan.view, DVec3::ZERO);
-            let mut records = Records::new(&source);
-            records.push(&source, t, chunk);
-            let points: Vec<_> = (0..POINTS).filter_map(|_| inside(t, random)).collect();
-            if points.is_empty() {
-                continue;
-            }
-            let fragments: Vec<_> =
-                points.iter().map(|&[x, y]| Fragment { record: 0, target: 0, x, y }).collect();
-            let mut varyings = Varyings::default();
-            interpolate(Level::new(), &records, &source, &fragments, &mut varyings);
-            for (lane, &point) in points.iter().enumerate() {
-                check(t, point, lane, &varyings);
-                looked += 1;
-            }
+    visit(plan, random, DVec3::ZERO, |t, points, source, records| {
+        let mut varyings = Varyings::default();
+        interpolate(Level::new(), records, source, &fragments(points), &mut varyings);
+        for (lane, &point) in points.iter().enumerate() {
+            check(t, point, lane, &varyings);
+            looked += 1;
         }
-    }
+    });
+    looked
+}
+
+/// Calls `check(triangle, point, radiance)` for points inside every triangle of the plan, lit by its
+/// lights without shadows.
+pub fn shaded(
+    plan: &Plan,
+    random: &mut Random,
+    mut check: impl FnMut(&Triangle, [i32; 2], [f32; 3]),
+) -> usize {
+    let anchor = shade::anchor(plan.scene.bounds(plan.t), &plan.view);
+    let lights = plan.lights.iter().map(|light| LightSource::new(light, &plan.view, anchor)).collect();
+    let lighting = Lighting { ambient: plan.ambient, lights, maps: &[], view: &plan.view, anchor };
+    let (mut scratch, mut out, mut looked) = (shade::Scratch::default(), [[0.0; BLOCK]; 3], 0);
+    visit(plan, random, anchor, |t, points, source, records| {
+        let fragments = fragments(points);
+        shade_block(Level::new(), &fragments, records, source, &lighting, &mut scratch, &mut out);
+        for (lane, &point) in points.iter().enumerate() {
+            check(t, point, out.map(|channel| channel[lane]));
+            looked += 1;
+        }
+    });
     looked
 }
 

@@ -4,6 +4,8 @@
 //! `target/golden/<pass>/`. `RASTERD_BLESS=1 cargo test --test it golden` rewrites the pictures; look at
 //! every one of them before it is committed.
 
+mod relief;
+
 use crate::draw::{file, frame, output, png, samples, scene_with};
 use rasterd::encode;
 use rasterd::pipeline::Frame;

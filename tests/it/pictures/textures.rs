@@ -116,9 +116,9 @@ fn a_floor_to_the_horizon_is_right_near_the_eye_and_its_linear_mean_far_away() {
             wrong += usize::from(pixel[0] != if is_white(uv) { 255 } else { 0 });
         }
     }
-    none_of("floor to the horizon, near", "wrong pixels", wrong, near);
+    none_of("B24 floor to the horizon, near", "wrong pixels", wrong, near);
     assert!(far > 500);
-    at_most("floor to the horizon, far", "difference to the linear mean in codes", worst, 1.0);
+    at_most("B24 floor to the horizon, far", "difference to the linear mean in codes", worst, 1.0);
 }
 
 /// A picture of 64 × 64 pixels that shows texture coordinates from `from` to `to`.
