@@ -7,6 +7,7 @@ pub mod normals;
 pub mod polygon;
 pub mod shapes;
 pub mod tangents;
+pub mod sky;
 pub mod texture;
 
 pub use build::{Corner, MeshSource, MeshTooLarge};

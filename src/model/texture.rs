@@ -1,7 +1,7 @@
 //! Textures: 8-bit texels, a mip chain in linear light, and how they are sampled.
 
 pub mod checker;
-mod mips;
+pub(in crate::model) mod mips;
 
 use std::mem::size_of_val;
 use std::sync::Arc;

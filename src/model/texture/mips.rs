@@ -5,9 +5,9 @@ use crate::math::colour::linear_from_srgb8;
 use rayon::prelude::*;
 
 /// A level on its way down the chain: linear f32, not yet rounded to 16 bits.
-struct LinearLevel {
+pub(in crate::model) struct LinearLevel {
     width: usize,
-    texels: Vec<[f32; 4]>,
+    pub(in crate::model) texels: Vec<[f32; 4]>,
 }
 
 /// Levels 1, 2, … of `image` down to 1 × 1; none for a 1 × 1 image.
@@ -35,7 +35,7 @@ pub(super) fn chain(image: &Image, color_space: ColorSpace) -> Vec<MipLevel> {
 }
 
 /// Side of the next level.
-fn half(side: usize) -> usize {
+pub(in crate::model) fn half(side: usize) -> usize {
     (side / 2).max(1)
 }
 
@@ -69,7 +69,11 @@ impl DecodeTable {
 }
 
 /// The next level of a `width × height` level whose texels `above(x, y)` gives.
-fn halve(width: usize, height: usize, above: impl Fn(usize, usize) -> [f32; 4] + Sync) -> LinearLevel {
+pub(in crate::model) fn halve(
+    width: usize,
+    height: usize,
+    above: impl Fn(usize, usize) -> [f32; 4] + Sync,
+) -> LinearLevel {
     let columns: Vec<Footprint> = (0..half(width)).map(|x| Footprint::of(x, width)).collect();
     let mut texels = vec![[0.0; 4]; half(width) * half(height)];
     texels.par_chunks_mut(half(width)).enumerate().for_each(|(y, row)| {
