@@ -1,8 +1,10 @@
-//! Image bytes → [`Image`].
+//! Image bytes → [`Image`], or [`Picture`] for a sky.
 
 use super::ImportError;
 use crate::limits::Limits;
+use crate::model::sky::texels::{BRIGHTEST, Picture, Texels};
 use crate::model::texture::Image;
+use image::codecs::hdr::HdrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 use std::io::Cursor;
 
@@ -10,7 +12,9 @@ use std::io::Cursor;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
     /// Neither content nor name say what it is.
-    #[error("not an image in a format that is read here (PNG, JPEG, WebP, BMP, TGA, GIF)")]
+    #[error(
+        "not an image in a format that is read here (PNG, JPEG, WebP, BMP, TGA, GIF; Radiance HDR for backgrounds)"
+    )]
     UnknownFormat,
     /// Damaged, cut off, or of a kind that the decoder does not know.
     #[error("the image cannot be read: {0}")]
@@ -88,6 +92,30 @@ pub fn decode(bytes: &[u8], file: &str, limits: &Limits) -> Result<Image, ImageE
     let (width, height) = rgba.dimensions();
     let (texels, _) = rgba.as_raw().as_chunks::<4>();
     Ok(Image { width, height, texels: texels.to_vec() })
+}
+
+/// Decodes a picture of a sky: Radiance HDR to linear floats, all other formats as [`decode`].
+///
+/// Values that are no numbers become 0, larger ones than [`BRIGHTEST`] that. The header's `EXPOSURE` is
+/// not applied.
+///
+/// # Errors
+/// As [`decode`].
+pub fn decode_picture(bytes: &[u8], file: &str, limits: &Limits) -> Result<Picture, ImageError> {
+    // Radiance itself begins its files with `#?RADIANCE`, some other programs with `#?RGBE`.
+    if !bytes.starts_with(b"#?") {
+        return decode(bytes, file, limits).map(Picture::from);
+    }
+    let decoder =
+        HdrDecoder::new_nonstrict(Cursor::new(bytes)).map_err(|error| decoding_error(&error, limits))?;
+    check_size(&decoder, limits)?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(|error| decoding_error(&error, limits))?;
+    let rgb = decoded.into_rgb32f();
+    let (width, height) = rgb.dimensions();
+    let (texels, _) = rgb.as_raw().as_chunks::<3>();
+    let scrubbed = |value: f32| if value > 0.0 { value.min(BRIGHTEST) } else { 0.0 };
+    let texels = texels.iter().map(|texel| texel.map(scrubbed)).collect();
+    Ok(Picture { width, height, texels: Texels::Linear(texels) })
 }
 
 /// By content; TGA by its name.
@@ -192,6 +220,60 @@ mod tests {
     #[test]
     fn text_is_not_an_image() {
         assert_eq!(decode(b"v 0 0 0\n", "a.png", &Limits::default()), Err(ImageError::UnknownFormat));
+    }
+
+    /// A Radiance picture of one row: mantissas and exponent of each texel, not compressed.
+    fn radiance(signature: &str, texels: &[[u8; 4]]) -> Vec<u8> {
+        let header = format!("{signature}\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X {}\n", texels.len());
+        [header.as_bytes(), texels.as_flattened()].concat()
+    }
+
+    #[test]
+    fn radiance_pictures_keep_what_is_brighter_than_white() {
+        for signature in ["#?RADIANCE", "#?RGBE"] {
+            // Mantissa · 2^(exponent − 136).
+            let bytes = radiance(signature, &[[128, 64, 0, 136], [3, 0, 255, 250]]);
+            let picture = decode_picture(&bytes, "sky.hdr", &Limits::default()).unwrap();
+            let texels = Texels::Linear(vec![[128.0, 64.0, 0.0], [BRIGHTEST, 0.0, BRIGHTEST]]);
+            assert_eq!(picture, Picture { width: 2, height: 1, texels });
+        }
+    }
+
+    #[test]
+    fn radiance_pictures_keep_to_the_limits_and_are_no_textures() {
+        let bytes = radiance("#?RADIANCE", &[[1, 1, 1, 128]; 2]);
+        assert_eq!(decode(&bytes, "sky.hdr", &Limits::default()), Err(ImageError::UnknownFormat));
+        let large = b"#?RADIANCE\n\n-Y 16385 +X 1\n";
+        let refused = decode_picture(large, "sky.hdr", &Limits::default()).unwrap_err();
+        assert_eq!(refused, ImageError::SideTooLarge { width: 1, height: 16_385, limit: 16_384 });
+        let bomb = b"#?RADIANCE\n\n-Y 16384 +X 16384\n";
+        let refused = decode_picture(bomb, "sky.hdr", &Limits::default()).unwrap_err();
+        assert!(matches!(refused, ImageError::TooManyBytes { .. }), "{refused}");
+        let cut = &bytes[..bytes.len() - 1];
+        let refused = decode_picture(cut, "sky.hdr", &Limits::default()).unwrap_err();
+        assert!(matches!(refused, ImageError::Unreadable(_)), "{refused}");
+    }
+
+    proptest! {
+        #[test]
+        fn damaged_radiance_pictures_never_panic(
+            hits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6),
+            tail in prop::collection::vec(any::<u8>(), 0..200),
+        ) {
+            let mut bytes = radiance("#?RADIANCE", &[[2, 2, 0, 9]; 9]);
+            for (at, value) in hits {
+                let at = at.index(bytes.len());
+                bytes[at] = value;
+            }
+            bytes.extend(tail);
+            let limits = Limits { scene_bytes: 1 << 24, ..Limits::default() };
+            if let Ok(Picture { width, height, texels: Texels::Linear(texels) }) =
+                decode_picture(&bytes, "x.hdr", &limits)
+            {
+                prop_assert_eq!(texels.len() as u64, u64::from(width) * u64::from(height));
+                prop_assert!(texels.iter().flatten().all(|v| (0.0..=BRIGHTEST).contains(v)));
+            }
+        }
     }
 
     proptest! {
