@@ -6,8 +6,8 @@ pub mod mesh;
 pub mod normals;
 pub mod polygon;
 pub mod shapes;
-pub mod tangents;
 pub mod sky;
+pub mod tangents;
 pub mod texture;
 
 pub use build::{Corner, MeshSource, MeshTooLarge};

@@ -17,7 +17,7 @@ pub mod samples;
 pub mod shade;
 pub mod shader;
 pub mod shadow;
-mod sky;
+pub mod sky;
 mod stats;
 mod target;
 pub mod tiles;

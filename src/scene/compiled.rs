@@ -2,6 +2,7 @@
 
 use crate::math::Bounds;
 use crate::math::angle::rotation_about_deg;
+use crate::model::sky::{CubeMap, Daylight, Panorama};
 use crate::model::{Material, Mesh, Shading, Tangents};
 use glam::{DMat3, DVec3, Vec3};
 use std::sync::Arc;
@@ -93,6 +94,8 @@ pub enum Lens {
 }
 
 /// What is drawn where nothing else is. Colours are linear RGB.
+///
+/// Its `Debug` form tells any two backgrounds of one scene content apart: entity tags are made from it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Background {
     /// One colour.
@@ -104,6 +107,12 @@ pub enum Background {
         /// Straight down.
         bottom: Vec3,
     },
+    /// A procedural sky.
+    Sky(Arc<Daylight>),
+    /// Six pictures.
+    CubeMap(Arc<CubeMap>),
+    /// An equirectangular picture.
+    Panorama(Arc<Panorama>),
     /// Alpha 0.
     Transparent,
 }

@@ -1,36 +1,16 @@
 //! What the wire contract has and this version does not draw: accepted, checked, and said in the
 //! scene's warnings. A feature that is drawn loses its function here.
 
-use super::document::{BackgroundPart, ShadowPart, default_lights};
+use super::document::{ShadowPart, default_lights};
 use super::{Document, LightKind, Scene, ShadowFilter, Warning};
 
 /// Everything in the scene that is not drawn as asked.
 pub(super) fn warnings(document: &Document, scene: &Scene) -> Vec<Warning> {
     let mut details = Vec::new();
-    details.extend(backgrounds(document));
     details.extend(soft_shadows(document));
     details.extend(point_shadows(scene));
     details.extend(post(document));
     details.into_iter().map(|detail| Warning { file: None, line: None, detail }).collect()
-}
-
-fn backgrounds(document: &Document) -> Vec<String> {
-    let environment = &document.environment;
-    let parts = environment.backgrounds.values().chain(environment.chosen());
-    let mut details: Vec<_> = parts
-        .filter_map(|part| match part {
-            BackgroundPart::Sky { .. } => Some("sky"),
-            BackgroundPart::Cubemap { .. } => Some("cubemap"),
-            BackgroundPart::Equirect { .. } => Some("equirect"),
-            _ => None,
-        })
-        .map(|kind| {
-            format!("a background of type {kind} is not drawn by this version; the default gradient is")
-        })
-        .collect();
-    details.sort();
-    details.dedup();
-    details
 }
 
 fn soft_shadows(document: &Document) -> Option<String> {

@@ -1,29 +1,50 @@
-//! The background, where nothing else is.
+//! The background, where nothing else is: a kind of background and a view in, linear RGB out.
+//!
+//! Every pixel is looked up along the line of sight through its centre, in world axes.
+
+mod cube_map;
+mod daylight;
+mod filter;
+mod panorama;
+pub mod rays;
 
 use super::tiles::cover::Region;
 use crate::math::simd::*;
 use crate::math::{Projection, View, approx, round_to_f32};
 use crate::scene;
+use cube_map::CubeMapView;
+use daylight::DaylightView;
 use glam::Vec3;
+use panorama::PanoramaView;
 
 /// A background as the tiles draw it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Background {
     /// One colour.
     Color(Vec3),
     /// By the elevation of the line of sight.
-    Gradient {
-        /// Colour at the nadir, and what it gains towards the zenith.
-        bottom: Vec3,
-        /// Zenith less nadir.
-        rise: Vec3,
-        /// World y of the line of sight's component per sub-pixel in x and y, and of the axis.
-        elevation: [f32; 3],
-        /// 1 / sub-pixels per unit of x/w and y/w.
-        unit: [f32; 2],
-    },
+    Gradient(Gradient),
+    /// A procedural sky.
+    Daylight(DaylightView),
+    /// Six pictures.
+    CubeMap(CubeMapView),
+    /// An equirectangular picture.
+    Panorama(PanoramaView),
     /// Nothing: alpha 0.
     Transparent,
+}
+
+/// A gradient and the elevations it is seen at.
+#[derive(Clone, Copy, Debug)]
+pub struct Gradient {
+    /// Colour at the nadir, and what it gains towards the zenith.
+    bottom: Vec3,
+    /// Zenith less nadir.
+    rise: Vec3,
+    /// World y of the line of sight's component per sub-pixel in x and y, and of the axis.
+    elevation: [f32; 3],
+    /// 1 / sub-pixels per unit of x/w and y/w.
+    unit: [f32; 2],
 }
 
 impl Background {
@@ -32,20 +53,11 @@ impl Background {
     pub fn new(background: &scene::Background, view: &View) -> Self {
         match background {
             scene::Background::Color(color) => Self::Color(*color),
+            scene::Background::Gradient { top, bottom } => Self::Gradient(Gradient::new(*top, *bottom, view)),
+            scene::Background::Sky(sky) => Self::Daylight(DaylightView::new(sky, view)),
+            scene::Background::CubeMap(map) => Self::CubeMap(CubeMapView::new(map, view)),
+            scene::Background::Panorama(panorama) => Self::Panorama(PanoramaView::new(panorama, view)),
             scene::Background::Transparent => Self::Transparent,
-            scene::Background::Gradient { top, bottom } => {
-                let unit = match view.projection {
-                    Projection::Perspective => view.scale.map(|scale| 1.0 / scale),
-                    Projection::Orthographic => [0.0; 2],
-                };
-                let elevation = [view.right.y * unit[0], -view.up.y * unit[1], view.forward.y];
-                Self::Gradient {
-                    bottom: *bottom,
-                    rise: *top - *bottom,
-                    elevation: elevation.map(round_to_f32),
-                    unit: unit.map(round_to_f32),
-                }
-            }
         }
     }
 
@@ -71,38 +83,107 @@ impl Background {
         side: usize,
         out: &mut [Vec<f32>; 3],
     ) {
-        match *self {
-            Self::Color(color) => fill(pixels, color, out),
+        let place = Place { region, side };
+        match self {
+            Self::Color(color) => fill(pixels, *color, out),
             Self::Transparent => fill(pixels, Vec3::ZERO, out),
-            Self::Gradient { bottom, rise, elevation, unit } => {
-                for group in pixels.chunks(LANES) {
-                    let pixel = always(
-                        #[inline(always)]
-                        |lane: usize| group[lane.min(group.len() - 1)] as usize,
-                    );
-                    let x = f32x8::from_fn(
-                        simd,
-                        #[inline(always)]
-                        |lane| centre(region.origin[0], pixel(lane) % side),
-                    );
-                    let y = f32x8::from_fn(
-                        simd,
-                        #[inline(always)]
-                        |lane| centre(region.origin[1], pixel(lane) / side),
-                    );
-                    let height = x * elevation[0] + y * elevation[1] + elevation[2];
-                    let (a, b) = (x * unit[0], y * unit[1]);
-                    let length = (a * a + b * b + 1.0).sqrt();
-                    let one = f32x8::splat(simd, 1.0);
-                    let sine = min(max(height / length, one * -1.0), one);
-                    let t = approx::asin(sine) * std::f32::consts::FRAC_1_PI + 0.5;
-                    for (lane, &pixel) in group.iter().enumerate() {
-                        let color = bottom + rise * t[lane];
-                        for c in 0..3 {
-                            out[c][pixel as usize] = color[c];
-                        }
-                    }
-                }
+            Self::Gradient(gradient) => place.draw(
+                simd,
+                pixels,
+                out,
+                #[inline(always)]
+                |x, y| gradient.radiance(simd, narrow(x), narrow(y)),
+            ),
+            Self::Daylight(sky) => place.draw(
+                simd,
+                pixels,
+                out,
+                #[inline(always)]
+                |x, y| sky.radiance(simd, x, y),
+            ),
+            Self::CubeMap(map) => place.draw(
+                simd,
+                pixels,
+                out,
+                #[inline(always)]
+                |x, y| map.radiance(simd, x, y),
+            ),
+            Self::Panorama(panorama) => place.draw(
+                simd,
+                pixels,
+                out,
+                #[inline(always)]
+                |x, y| panorama.radiance(simd, x, y),
+            ),
+        }
+    }
+}
+
+impl Gradient {
+    fn new(top: Vec3, bottom: Vec3, view: &View) -> Self {
+        let unit = match view.projection {
+            Projection::Perspective => view.scale.map(|scale| 1.0 / scale),
+            Projection::Orthographic => [0.0; 2],
+        };
+        let elevation = [view.right.y * unit[0], -view.up.y * unit[1], view.forward.y];
+        Self {
+            bottom,
+            rise: top - bottom,
+            elevation: elevation.map(round_to_f32),
+            unit: unit.map(round_to_f32),
+        }
+    }
+
+    /// Colour along the lines of sight through eight screen points.
+    #[inline(always)]
+    fn radiance<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> Vec3x8<S> {
+        let height = x * self.elevation[0] + y * self.elevation[1] + self.elevation[2];
+        let (a, b) = (x * self.unit[0], y * self.unit[1]);
+        let length = (a * a + b * b + 1.0).sqrt();
+        let one = f32x8::splat(simd, 1.0);
+        let sine = min(max(height / length, one * -1.0), one);
+        let t = approx::asin(sine) * std::f32::consts::FRAC_1_PI + 0.5;
+        Vec3x8::splat(simd, self.bottom) + Vec3x8::splat(simd, self.rise).scale(t)
+    }
+}
+
+/// The tile that is drawn.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    region: &'a Region,
+    side: usize,
+}
+
+impl Place<'_> {
+    /// Writes `radiance(x, y)` of the centres of `pixels`, eight at a time, to their places.
+    #[inline(always)]
+    fn draw<S: Simd>(
+        self,
+        simd: S,
+        pixels: &[u32],
+        out: &mut [Vec<f32>; 3],
+        radiance: impl Fn(f64x8<S>, f64x8<S>) -> Vec3x8<S>,
+    ) {
+        for group in pixels.chunks(LANES) {
+            let pixel = always(
+                #[inline(always)]
+                |lane: usize| group[lane.min(group.len() - 1)] as usize,
+            );
+            let x = f64x8::from_fn(
+                simd,
+                #[inline(always)]
+                |lane| centre(self.region.origin[0], pixel(lane) % self.side),
+            );
+            let y = f64x8::from_fn(
+                simd,
+                #[inline(always)]
+                |lane| centre(self.region.origin[1], pixel(lane) / self.side),
+            );
+            let color = radiance(x, y);
+            for (lane, &pixel) in group.iter().enumerate() {
+                out[0][pixel as usize] = color.x[lane];
+                out[1][pixel as usize] = color.y[lane];
+                out[2][pixel as usize] = color.z[lane];
             }
         }
     }
@@ -116,8 +197,7 @@ fn fill(pixels: &[u32], color: Vec3, out: &mut [Vec<f32>; 3]) {
     }
 }
 
-/// Screen coordinate of a pixel's centre: exact in f32, below 2²² sub-pixels.
-#[expect(clippy::cast_precision_loss, reason = "a picture has at most 2²² sub-pixels a side")]
-fn centre(origin: i32, pixel: usize) -> f32 {
-    (origin + i32::try_from(pixel).expect("a tile is small") * 256 + 128) as f32
+/// Screen coordinate of a pixel's centre, in sub-pixels.
+fn centre(origin: i32, pixel: usize) -> f64 {
+    f64::from(origin + i32::try_from(pixel).expect("a tile is small") * 256 + 128)
 }

@@ -3,6 +3,7 @@
 use super::build::LoadedMesh;
 use crate::model::texture::{ColorSpace, Image};
 use crate::model::{Filter, Mesh, Tangents, Texture, Wrap};
+use crate::scene::Background;
 use crate::scene::document::{MeshPart, TextureSource};
 use bytes::Bytes;
 use std::collections::BTreeMap;
@@ -19,6 +20,8 @@ pub struct Assets {
     pub(super) images: BTreeMap<String, ImageAsset>,
     /// By [`Sampling::key`].
     pub(super) textures: BTreeMap<String, Arc<Texture>>,
+    /// Backgrounds that take memory, by what they were made of but for the bytes of files.
+    pub(super) skies: BTreeMap<String, SkyAsset>,
     /// Textures that only MTL files name.
     pub(super) textures_of_files: usize,
     /// Every file with its hash, by name.
@@ -53,7 +56,7 @@ impl Assets {
         self.files.iter().map(|(name, file)| (name.as_str(), file.hash.as_bytes()))
     }
 
-    /// Bytes of all meshes, tangents, images and textures, each counted once.
+    /// Bytes of all meshes, tangents, images, textures and backgrounds, each counted once.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let mut meshes: Vec<_> = self.meshes.values().map(|asset| &asset.loaded.mesh).collect();
@@ -63,7 +66,8 @@ impl Assets {
         let tangents: u64 = self.tangents.values().map(|(_, tangents)| tangents.bytes()).sum();
         let images: u64 = self.images.values().map(|asset| asset.image.bytes()).sum();
         let mips: u64 = self.textures.values().map(|texture| mip_bytes(texture)).sum();
-        meshes + tangents + images + mips
+        let skies: u64 = self.skies.values().map(SkyAsset::bytes).sum();
+        meshes + tangents + images + mips + skies
     }
 }
 
@@ -92,6 +96,31 @@ impl MeshAsset {
 pub(super) struct ImageAsset {
     pub source: ImageSource,
     pub image: Arc<Image>,
+}
+
+/// A background and the files it was made of.
+#[derive(Clone, Debug)]
+pub(super) struct SkyAsset {
+    pub files: Vec<(String, Bytes)>,
+    pub background: Background,
+}
+
+impl SkyAsset {
+    /// Whether it was made of the same files.
+    pub(super) fn is_of(&self, files: &[(String, Bytes)]) -> bool {
+        let same = |((a, x), (b, y)): (&(String, Bytes), &(String, Bytes))| a == b && same_bytes(x, y);
+        self.files.len() == files.len() && self.files.iter().zip(files).all(same)
+    }
+
+    /// Bytes of memory it holds beyond those of its files.
+    pub(super) fn bytes(&self) -> u64 {
+        match &self.background {
+            Background::Sky(sky) => sky.bytes(),
+            Background::CubeMap(map) => map.bytes(),
+            Background::Panorama(panorama) => panorama.bytes(),
+            Background::Color(_) | Background::Gradient { .. } | Background::Transparent => 0,
+        }
+    }
 }
 
 /// What an image is made of.

@@ -1,13 +1,15 @@
-//! Meshes, images and textures of a scene: built once, shared by every version that has them alike.
+//! Meshes, images, textures and backgrounds of a scene: built once, shared by every version that has them alike.
 
+mod backgrounds;
 mod build;
 mod cache;
 mod textures;
 
+pub(super) use backgrounds::BackgroundPlace;
 pub use cache::Assets;
 
 use super::compile::SceneError;
-use super::document::{BackgroundChoice, BackgroundPart, EnvironmentPart, MeshPart, missing_file};
+use super::document::{MeshPart, missing_file};
 use super::{Document, Files, Warning};
 use crate::limits::Limits;
 use crate::model::{Mesh, Tangents};
@@ -120,30 +122,6 @@ impl<'a> Loader<'a> {
         self.count_bytes(tangents.bytes())?;
         self.assets.tangents.insert(key, (mesh.clone(), tangents.clone()));
         Ok(Some(tangents))
-    }
-
-    /// Warns of backgrounds whose files are missing.
-    pub(super) fn check_backgrounds(&mut self, environment: &EnvironmentPart) {
-        if let BackgroundChoice::Here(part) = &environment.background {
-            self.check_background(part, "the background");
-        }
-        for (name, part) in &environment.backgrounds {
-            self.check_background(part, &format!("the background {name:?}"));
-        }
-    }
-
-    fn check_background(&mut self, part: &BackgroundPart, what: &str) {
-        match part {
-            BackgroundPart::Equirect { file } => {
-                self.find_picture(file, what);
-            }
-            BackgroundPart::Cubemap { faces } => {
-                for file in faces {
-                    self.find_picture(file, what);
-                }
-            }
-            _ => {}
-        }
     }
 
     /// The picture that `path` names; a warning where it is missing, since a scene can do without.

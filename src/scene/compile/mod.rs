@@ -4,18 +4,18 @@
 //! [`Scene`] in anchored space that shares every mesh and texture that did not change, or every
 //! reason why there is none.
 
+mod backgrounds;
 mod instances;
 mod lights;
 mod surfaces;
 
 use super::assets::{Assets, Loader};
 use super::{
-    Background, Camera, Document, Fault, Files, Instance, RenderDefaults, Scene, Warning, framing,
-    limits_check, not_yet,
+    Camera, Document, Fault, Files, Instance, RenderDefaults, Scene, Warning, framing, limits_check, not_yet,
 };
 use crate::limits::{Limits, MAX_COORDINATE};
 use crate::math::Bounds;
-use crate::scene::document::{self, BackgroundPart, CameraPart, Faults, RenderPart, token};
+use crate::scene::document::{self, CameraPart, Faults, RenderPart, token};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 use std::collections::HashSet;
@@ -56,7 +56,7 @@ pub enum SceneError {
 pub struct Compiled {
     /// The scene.
     pub scene: Scene,
-    /// Meshes and textures by what they were made of.
+    /// Meshes, textures and backgrounds by what they were made of.
     pub assets: Assets,
 }
 
@@ -78,7 +78,7 @@ pub fn compile(
     let surfaces = Surfaces::compile(document, &meshes, &mut loader)?;
     let mut instances = instances::compile(document, &meshes, &surfaces);
     let tangents = instances::tangents(&instances, &meshes, &surfaces, &mut loader)?;
-    loader.check_backgrounds(&document.environment);
+    let backgrounds = backgrounds::compile(document, &mut loader)?;
     let (assets, mut warnings) = loader.finish();
 
     let anchor = anchor(document, &instances, &meshes);
@@ -90,8 +90,8 @@ pub fn compile(
         anchor,
         camera: camera(document, anchor),
         ambient: document.environment.ambient.to_linear(),
-        background: document.environment.chosen().map_or(Background::Transparent, background),
-        backgrounds: named_backgrounds(document),
+        background: backgrounds.chosen,
+        backgrounds: backgrounds.named,
         lights: lights::compile(document, anchor),
         tangents,
         mesh_names: meshes.iter().map(|loaded| loaded.name.clone()).collect(),
@@ -182,25 +182,6 @@ fn camera(document: &Document, anchor: DVec3) -> Camera {
         far: camera.far,
         orbit_deg_per_s: camera.orbit_deg_per_s,
     }
-}
-
-/// Backgrounds that are not drawn yet are drawn as the default gradient; [`not_yet`] says so.
-fn background(part: &BackgroundPart) -> Background {
-    match part {
-        BackgroundPart::Color(color) => Background::Color(color.to_linear()),
-        BackgroundPart::Gradient { top, bottom } => {
-            Background::Gradient { top: top.to_linear(), bottom: bottom.to_linear() }
-        }
-        BackgroundPart::Transparent => Background::Transparent,
-        BackgroundPart::Sky { .. } | BackgroundPart::Cubemap { .. } | BackgroundPart::Equirect { .. } => {
-            background(&BackgroundPart::default())
-        }
-    }
-}
-
-fn named_backgrounds(document: &Document) -> Vec<(String, Background)> {
-    let parts = &document.environment.backgrounds;
-    parts.iter().map(|(name, part)| (name.clone(), background(part))).collect()
 }
 
 fn render_defaults(part: &RenderPart) -> RenderDefaults {

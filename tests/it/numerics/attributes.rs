@@ -113,7 +113,7 @@ fn b22_coordinates_around_a_million_read_the_texel_that_they_name() {
                 let corner = t.corners().map(|c| 3 * t.source as usize + c);
                 let e = weights(t, point);
                 let share = [0, 1, 2].map(|i| e[i] as f64 / -positions[corner[i]].z);
-                for (axis, value) in varyings.uv.iter().enumerate() {
+                for (axis, value) in varyings.texture.uv.iter().enumerate() {
                     let at = corner.map(|c| uvs[c][axis]);
                     let exact = (0..3).map(|i| share[i] * at[i]).sum::<f64>() / share.iter().sum::<f64>();
                     worst = worst.max(apart(f64::from(value[lane]), exact).abs());

@@ -7,7 +7,7 @@ use fearless_simd::Level;
 use glam::{DVec3, Vec3};
 use rasterd::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
 use rasterd::pipeline::shade::relief::tilt;
-use rasterd::pipeline::shade::texture::sample_normals;
+use rasterd::pipeline::shade::texture::{Coordinates, sample_normals};
 use rasterd::pipeline::shade::{BLOCK, varyings::Varyings};
 use rasterd::plan::{FrameRequest, Heights, Relief};
 use rasterd::scene::Files;
@@ -41,8 +41,7 @@ fn tilted(relief: &Relief, places: &[Place], varyings: &Varyings) -> Vec<DVec3> 
         normal: vectors(0),
         along_u: vectors(1),
         along_v: vectors(2),
-        uv: varyings.uv,
-        uv_per_pixel: varyings.uv_per_pixel,
+        texture: varyings.texture.clone(),
         uv_per_world: varyings.uv_per_world,
         ..Varyings::default()
     };
@@ -111,9 +110,9 @@ fn every_code_of_a_normal_map_decodes_exactly() {
     let map = texture(256, 1, |x, _| [x as u8, 255 - x as u8, x as u8, 255], Filter::Nearest);
     for code in 0..=255u8 {
         let u = (f32::from(code) + 0.5) / 256.0;
-        let varyings = Varyings { uv: [[u; BLOCK], [0.5; BLOCK]], ..Varyings::default() };
+        let coordinates = Coordinates { uv: [[u; BLOCK], [0.5; BLOCK]], ..Coordinates::default() };
         let mut out = [[f32::NAN; BLOCK]; 4];
-        sample_normals(Level::new(), &map, &varyings, 1, &mut out);
+        sample_normals(Level::new(), &map, &coordinates, 1, &mut out);
         let exact = |code: u8| (((f64::from(code) - 128.0) / 127.0).max(-1.0)) as f32;
         assert_eq!([out[0][0], out[1][0]], [exact(code), exact(255 - code)], "code {code}");
     }
@@ -133,8 +132,13 @@ fn b29_neutral_texels_leave_the_bits_of_a_normal_whatever_filter_and_level() {
             let places = places(&mut random);
             // The lower left quarter: rows run down, v runs up.
             let varyings = Varyings {
-                uv: [[random.between(0.15, 0.3) as f32; BLOCK], [random.between(0.7, 0.85) as f32; BLOCK]],
-                uv_per_pixel: [[step; BLOCK], [0.0; BLOCK], [0.0; BLOCK], [step; BLOCK]],
+                texture: Coordinates {
+                    uv: [
+                        [random.between(0.15, 0.3) as f32; BLOCK],
+                        [random.between(0.7, 0.85) as f32; BLOCK],
+                    ],
+                    per_pixel: [[step; BLOCK], [0.0; BLOCK], [0.0; BLOCK], [step; BLOCK]],
+                },
                 uv_per_world: [[1.0; BLOCK]; 2],
                 ..Varyings::default()
             };
@@ -163,8 +167,10 @@ fn b29_heights_of_any_scale_leave_the_normal_finite_and_on_its_side() {
             let places = places(&mut random);
             let mut any = |from: f64, to: f64| std::array::from_fn(|_| random.magnitude(from, to) as f32);
             let varyings = Varyings {
-                uv: [any(1e-3, 10.0), any(1e-3, 10.0)],
-                uv_per_pixel: [any(1e-9, 1.0), any(1e-9, 1.0), any(1e-9, 1.0), any(1e-9, 1.0)],
+                texture: Coordinates {
+                    uv: [any(1e-3, 10.0), any(1e-3, 10.0)],
+                    per_pixel: [any(1e-9, 1.0), any(1e-9, 1.0), any(1e-9, 1.0), any(1e-9, 1.0)],
+                },
                 uv_per_world: [any(1e-30, 1e30), any(1e-30, 1e30)],
                 ..Varyings::default()
             };
