@@ -66,7 +66,8 @@ pub fn sample(
 /// of unit length. (The fourth is alpha.)
 ///
 /// Decoding is affine but for the code 0, which stands for −1 as 1 does: mips, made from the codes, hold
-/// the mean of the decoded texels but for 1/127 of the share that had that code.
+/// the mean of the decoded texels but for 1/127 of the share that had that code. Where the wrap mode
+/// mirrors the picture its vectors stay as they are, as in every graphics API.
 pub fn sample_normals(
     level: Level,
     texture: &Texture,
@@ -84,13 +85,14 @@ fn sample_with(
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
 ) {
-    dispatch!(level, simd => sample_kernel(simd, sampler, coordinates, count, out));
+    // By value: tables that are the kernel's own stay in registers.
+    dispatch!(level, simd => sample_kernel(simd, *sampler, coordinates, count, out));
 }
 
 #[inline(always)]
 fn sample_kernel<S: Simd>(
     simd: S,
-    sampler: &Sampler,
+    sampler: Sampler,
     coordinates: &Coordinates,
     count: usize,
     out: &mut [[f32; BLOCK]; 4],
@@ -159,6 +161,7 @@ fn float(levels: usize) -> f32 {
 }
 
 /// A texture as it is read texel by texel.
+#[derive(Clone, Copy)]
 struct Sampler<'a> {
     texture: &'a Texture,
     decode: &'static [f32; 256],

@@ -8,6 +8,10 @@ use glam::DVec3;
 use rasterd::plan::FrameRequest;
 use serde_json::{Value, json};
 
+fn byte(n: u32) -> u8 {
+    u8::try_from(n).expect("a byte")
+}
+
 /// What MTL files call these maps, against the document's own.
 #[test]
 fn mtl_maps_draw_what_the_document_s_do() {
@@ -15,7 +19,7 @@ fn mtl_maps_draw_what_the_document_s_do() {
     let obj = "mtllib m.mtl\nusemtl m\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
     let quad = json!({ "type": "triangles", "indices": [[0, 1, 2], [0, 2, 3]],
         "positions": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], "uvs": [[0, 0], [1, 0], [1, 1], [0, 1]] });
-    let rough = png(16, 16, |x, y| [(x * y) as u8, (x * 15) as u8, 200 + (y * 3) as u8, 255]);
+    let rough = png(16, 16, |x, y| [byte(x * y), byte(x * 15), byte(200 + y * 3), 255]);
     for (mtl, material) in [
         ("norm map.png", json!({ "normal_map": "map" })),
         ("map_Bump -bm 4 map.png", json!({ "bump_map": "map", "bump_scale": 0.08 })),

@@ -22,7 +22,8 @@ fn slanted() -> Files {
 
 /// Heights that rise steadily to the right and half as much upwards, from their lower left corner.
 fn ramp() -> Files {
-    file("map.png", png(64, 64, |x, y| [(2 * x + 63 - y) as u8, 0, 0, 255]))
+    let height = |x: u32, y: u32| u8::try_from(2 * x + 63 - y).expect("at most 189");
+    file("map.png", png(64, 64, |x, y| [height(x, y), 0, 0, 255]))
 }
 
 /// Slopes of [`ramp`] in heights a unit of u and v.
@@ -147,7 +148,7 @@ const PLACEMENTS: [(DVec3, f64); 4] = [
     (DVec3::ONE, 0.0),
     (DVec3::new(1.0, 0.6, 1.4), 30.0),
     (DVec3::new(-1.0, 1.0, 1.0), -20.0),
-    (DVec3::new(0.8, -1.2, 1.0), 200.0),
+    (DVec3::new(0.8, -1.2, 1.0), 20.0),
 ];
 
 fn cameras() -> [Camera; 2] {

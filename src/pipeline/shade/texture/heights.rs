@@ -65,32 +65,38 @@ impl Sampler<'_> {
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "a texture has at most 2¹⁴ texels a side")]
     fn level_slopes(&self, level: usize, u: f32, v: f32) -> [f32; 2] {
-        let [w, h] = self.size(level);
-        let [du, dv] = [0.5 / w as f32, 0.5 / h as f32];
-        let rise = self.height(level, u + du, v) - self.height(level, u - du, v);
-        let climb = self.height(level, u, v + dv) - self.height(level, u, v - dv);
+        let ([w, h], [wrap_u, wrap_v]) = (self.size(level), self.texture.wrap);
+        let ([left, right], [below, above]) = (around(u, 0.5 / w as f32), around(v, 0.5 / h as f32));
+        let column = always(
+            #[inline(always)]
+            |u: f32| address(wrap_u, u, w, 0.5),
+        );
+        let row = always(
+            #[inline(always)]
+            |v: f32| address(wrap_v, v, h, 0.5),
+        );
+        let (x, y) = (column(u), row(v));
+        let across = self.height(level, column(right), y) - self.height(level, column(left), y);
+        let up = self.height(level, x, row(above)) - self.height(level, x, row(below));
         // Over the step as it was rounded; none is left where coordinates are beyond all texels.
         let slope = always(
             #[inline(always)]
             |rise: f32, step: f32| if step > 0.0 { rise / step } else { 0.0 },
         );
-        [slope(rise, (u + du) - (u - du)), slope(climb, (v + dv) - (v - dv))]
+        [slope(across, right - left), slope(up, above - below)]
     }
 
-    /// The red channel, bilinear in one level.
+    /// The red channel between two columns and two rows of a level.
     #[inline(always)]
-    fn height(&self, level: usize, u: f32, v: f32) -> f32 {
-        let [w, h] = self.size(level);
-        let (x, fx) = address(self.texture.wrap[0], u, w, 0.5);
-        let (y, fy) = address(self.texture.wrap[1], v, h, 0.5);
-        let row = always(
+    fn height(&self, level: usize, (x, fx): ([usize; 2], f32), (y, fy): ([usize; 2], f32)) -> f32 {
+        let between = always(
             #[inline(always)]
             |y: usize| {
                 let (a, b) = (self.red(level, x[0], y), self.red(level, x[1], y));
                 a + (b - a) * fx
             },
         );
-        let (a, b) = (row(y[0]), row(y[1]));
+        let (a, b) = (between(y[0]), between(y[1]));
         a + (b - a) * fy
     }
 
@@ -104,4 +110,10 @@ impl Sampler<'_> {
             self.decode16(mip.texels[index(x, y, mip.width, mip.height)][0])
         }
     }
+}
+
+/// `c` less and plus `reach`.
+#[inline(always)]
+fn around(c: f32, reach: f32) -> [f32; 2] {
+    [c - reach, c + reach]
 }

@@ -6,6 +6,11 @@ use rasterd::plan::FrameRequest;
 use rasterd::scene::Files;
 use serde_json::{Value, json};
 
+#[expect(clippy::cast_possible_truncation, reason = "the pictures below stay in 0–255")]
+fn code(value: f64) -> u8 {
+    value.round() as u8
+}
+
 /// Studs, `across` × `down` of them, as a normal map: each a quarter of a ball that stands out.
 fn studs(across: u32, down: u32) -> Files {
     let side = 32;
@@ -15,7 +20,7 @@ fn studs(across: u32, down: u32) -> Files {
         let (x, y) = (at(x) / 0.8, -at(y) / 0.8);
         let flat = x * x + y * y;
         let normal = if flat < 0.7 { [x, y, (1.0 - flat).sqrt()] } else { [0.0, 0.0, 1.0] };
-        let [r, g, b] = normal.map(|c| (128.0 + 127.0 * c).round() as u8);
+        let [r, g, b] = normal.map(|c| code(128.0 + 127.0 * c));
         [r, g, b, 255]
     };
     file("map.png", png(across * side, down * side, texel))
@@ -25,7 +30,7 @@ fn studs(across: u32, down: u32) -> Files {
 fn waves() -> Files {
     let wave = |x: u32, y: u32| {
         let [a, b] = [x, y].map(|n| f64::from(n) / 256.0 * std::f64::consts::TAU);
-        (128.0 + 62.0 * (a * 6.0 + 2.0 * (b * 4.0).sin()).sin() + 62.0 * (b * 8.0).cos()).round() as u8
+        code(128.0 + 62.0 * (a * 6.0 + 2.0 * (b * 4.0).sin()).sin() + 62.0 * (b * 8.0).cos())
     };
     file("map.png", png(256, 256, |x, y| [wave(x, y), 0, 0, 255]))
 }
