@@ -1,8 +1,10 @@
 //! The rasterizing pipeline: a plan in, pixels out.
 //!
 //! ```text
-//! shadow ─ geometry ─ tiles (cover ─ shade ─ sky ─ resolve ─ output)
+//! shadow ─ geometry ─ tiles (cover ─ shade ─ sky ─ resolve) ─ post ─ output
 //! ```
+//!
+//! Where no effect of `post` looks at a pixel's neighbours, the tiles do the work of the last two.
 //!
 //! All of it runs on the threads of a [`Work`], and gives the same bytes for any number of them and
 //! any SIMD level.
@@ -11,6 +13,7 @@ pub mod draw;
 pub mod geometry;
 mod output;
 mod pick;
+pub mod post;
 pub mod program;
 mod resolve;
 pub mod samples;
@@ -31,9 +34,11 @@ pub use work::{Cancelled, Work};
 use crate::plan::{Output, Plan};
 use geometry::Bins;
 use geometry::bin::TileGrid;
+use post::LinearFrame;
 use shade::Lighting;
 use shade::light::LightSource;
 use std::time::Instant;
+use tiles::{Resolved, Shared, Tile};
 
 /// Draws one frame.
 ///
@@ -106,7 +111,7 @@ fn draw_colors(
     work: &Work,
 ) -> Result<Frame, Cancelled> {
     let anchor = shade::anchor(plan.scene.bounds(plan.t), &plan.view);
-    let shared = tiles::Shared {
+    let shared = Shared {
         bins,
         draws: &plan.draws,
         items: &plan.items,
@@ -121,43 +126,80 @@ fn draw_colors(
         background: sky::Background::new(&plan.background, &plan.view),
         samples: plan.samples,
     };
-    let began = Instant::now();
-    let (pixels, times) = match plan.output {
-        Output::Radiance => draw_radiance(plan, &shared, work)?,
-        _ => draw_bytes(plan, &shared, work)?,
+    let (pixels, shaded) = match plan.output {
+        Output::Radiance => draw_radiance(plan, &shared, &mut timings, work)?,
+        _ if plan.post.passes.is_empty() => draw_bytes(plan, &shared, &mut timings, work)?,
+        _ => draw_and_post(plan, &shared, &mut timings, work)?,
     };
-    timings.push_tiles(milliseconds(began), &times);
-    Ok(Frame::new(plan, pixels, Stats::new(bins, times.shaded, maps.len()), timings))
+    Ok(Frame::new(plan, pixels, Stats::new(bins, shaded, maps.len()), timings))
 }
 
-/// Tiles that end in bytes.
+/// Tiles that end in bytes. Returns how many fragments were shaded, too.
 fn draw_bytes(
     plan: &Plan,
-    shared: &tiles::Shared,
+    shared: &Shared,
+    timings: &mut Timings,
     work: &Work,
-) -> Result<(Pixels, stats::TileTimes), Cancelled> {
+) -> Result<(Pixels, u64), Cancelled> {
     let mut pixels = vec![[0; 4]; plan.view.pixels()];
     let tiles = tiles::split(&mut pixels, &shared.bins.grid);
-    let write = |resolved: &tiles::Resolved, tile: tiles::Tile<_>| {
-        output::encode_tile(work.level, resolved, tile.rows);
+    let write = |resolved: &Resolved, tile: Tile<[u8; 4]>| {
+        output::encode_tile(work.level, resolved, &plan.post.in_tiles, tile);
     };
-    let times = tiles::draw(shared, tiles, write, work)?;
-    Ok((Pixels::Rgba8 { pixels, opaque: !shared.background.is_transparent() }, times))
+    let shaded = draw_tiles(shared, tiles, write, timings, work)?;
+    Ok((Pixels::Rgba8 { pixels, opaque: !shared.background.is_transparent() }, shaded))
 }
 
-/// Tiles that end in linear colour.
+/// Tiles that end in linear colour, and nothing else.
 fn draw_radiance(
     plan: &Plan,
-    shared: &tiles::Shared,
+    shared: &Shared,
+    timings: &mut Timings,
     work: &Work,
-) -> Result<(Pixels, stats::TileTimes), Cancelled> {
+) -> Result<(Pixels, u64), Cancelled> {
     let mut pixels = vec![[0.0; 4]; plan.view.pixels()];
     let tiles = tiles::split(&mut pixels, &shared.bins.grid);
-    let write = |resolved: &tiles::Resolved, tile: tiles::Tile<_>| {
-        output::write_radiance(work.level, resolved, tile.rows);
+    let write =
+        |resolved: &Resolved, tile: Tile<[f32; 4]>| output::write_radiance(work.level, resolved, tile);
+    let shaded = draw_tiles(shared, tiles, write, timings, work)?;
+    Ok((Pixels::Rgba32F { pixels, opaque: !shared.background.is_transparent() }, shaded))
+}
+
+/// Tiles that end in linear colour for the passes of `post`, then those, then bytes.
+fn draw_and_post(
+    plan: &Plan,
+    shared: &Shared,
+    timings: &mut Timings,
+    work: &Work,
+) -> Result<(Pixels, u64), Cancelled> {
+    let transparent = shared.background.is_transparent();
+    let mut linear = LinearFrame::new([plan.view.width, plan.view.height], &plan.post, transparent);
+    let tiles = linear.tiles(&shared.bins.grid);
+    let write = |resolved: &Resolved, tile: Tile<f32>| {
+        post::write_tile(work.level, resolved, &plan.post.in_tiles, tile);
     };
+    let shaded = draw_tiles(shared, tiles, write, timings, work)?;
+    let began = Instant::now();
+    post::run_passes(&mut linear, &plan.post, work)?;
+    let mut pixels = vec![[0; 4]; plan.view.pixels()];
+    output::encode_frame(&linear, plan.post.last_steps(), &mut pixels, work)?;
+    timings.push("post", milliseconds(began));
+    Ok((Pixels::Rgba8 { pixels, opaque: !transparent }, shaded))
+}
+
+/// Draws the tiles of a picture of colours and notes their times. Returns how many fragments were
+/// shaded.
+fn draw_tiles<P: Send>(
+    shared: &Shared,
+    tiles: Vec<Tile<P>>,
+    write: impl Fn(&Resolved, Tile<P>) + Sync,
+    timings: &mut Timings,
+    work: &Work,
+) -> Result<u64, Cancelled> {
+    let began = Instant::now();
     let times = tiles::draw(shared, tiles, write, work)?;
-    Ok((Pixels::Rgba32F { pixels, opaque: !shared.background.is_transparent() }, times))
+    timings.push_tiles(milliseconds(began), &times);
+    Ok(times.shaded)
 }
 
 /// Draws a picture of 16-bit values: distances or instances, straight from what each pixel sees.

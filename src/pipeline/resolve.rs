@@ -1,9 +1,10 @@
 //! Resolve: the samples of a shared pixel to its colour.
 
+use super::shade::BRIGHTEST;
 use super::tiles::fragments::{Fragments, SharedPixel};
 
 /// Fills the places of all pixels that more than one surface share, or none covers: with the mean of
-/// their samples. Uncovered samples show `sky`.
+/// their samples. Uncovered samples show `sky`, as bright as radiance gets.
 pub fn resolve(
     fragments: &Fragments,
     sky: &[Vec<f32>; 3],
@@ -14,13 +15,13 @@ pub fn resolve(
     let own = side * side;
     for (channel, sky) in colors.iter_mut().zip(sky) {
         for &pixel in &fragments.sky {
-            channel[pixel as usize] = sky[pixel as usize];
+            channel[pixel as usize] = sky[pixel as usize].min(BRIGHTEST);
         }
     }
     for shared in &fragments.shared {
         for (channel, sky) in colors.iter_mut().zip(sky) {
             let pixel = shared.pixel as usize;
-            let mut values = values(fragments, shared, &channel[own..], sky[pixel]);
+            let mut values = values(fragments, shared, &channel[own..], sky[pixel].min(BRIGHTEST));
             channel[pixel] = mean(&mut values[..samples as usize]);
         }
     }

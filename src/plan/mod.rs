@@ -6,6 +6,7 @@
 mod draw;
 mod etag;
 pub mod opacity;
+mod post;
 pub mod request;
 mod shadow;
 mod surface;
@@ -13,6 +14,7 @@ mod view;
 
 pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
 pub use opacity::{Alpha, AlphaTest, ItemTest, Opacity, Transparency};
+pub use post::{Curve, Gaussian, Kernel, KernelRow, Neighbourhood, Pointwise, PostChain, PostPass};
 pub use request::{FrameRequest, Output, QueryFault};
 pub use shadow::{CasterTest, ShadowPass, orthonormal_basis};
 
@@ -50,6 +52,8 @@ pub struct Plan {
     pub shadows: Vec<ShadowPass>,
     /// What is drawn where nothing else is.
     pub background: Background,
+    /// What happens to the picture before it is encoded.
+    pub post: PostChain,
     /// Distances that 0 and 65535 stand for in `output=depth`.
     pub depth_range: Option<[f64; 2]>,
     /// Working memory that it will take.
@@ -115,10 +119,17 @@ impl Plan {
             lights: Vec::new(),
             shadows: Vec::new(),
             background: if is_shaded { background } else { Background::Color(Vec3::ZERO) },
+            post: if request.output == Output::Color {
+                PostChain::new(&scene.post, width, height)
+            } else {
+                PostChain::default()
+            },
             depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
             bytes: 0,
         };
         plan.charge(u64::from(width) * u64::from(height) * request.output.pixel_bytes(), limits)?;
+        let transparent = plan.background == Background::Transparent;
+        plan.charge(plan.post.frame_bytes(width, height, transparent), limits)?;
         plan.add_instances(shading, limits)?;
         if plan.draws.iter().any(|draw| draw.surface.lit) {
             plan.add_lights(limits)?;

@@ -1,5 +1,6 @@
 //! The compiled scene: immutable, checked, ready to be planned.
 
+use super::document::PostEffect;
 use crate::math::Bounds;
 use crate::math::angle::rotation_about_deg;
 use crate::model::sky::{CubeMap, Daylight, Panorama};
@@ -36,6 +37,8 @@ pub struct Scene {
     pub materials: Vec<Arc<Material>>,
     /// In order of name, which is the submission order; hidden ones too.
     pub instances: Vec<Instance>,
+    /// Effects on the finished picture, in order.
+    pub post: Vec<PostEffect>,
     /// The document's `render` part.
     pub render: RenderDefaults,
     /// What the client should know but what stops nothing.

@@ -9,7 +9,6 @@ pub(super) fn warnings(document: &Document, scene: &Scene) -> Vec<Warning> {
     let mut details = Vec::new();
     details.extend(soft_shadows(document));
     details.extend(point_shadows(scene));
-    details.extend(post(document));
     details.into_iter().map(|detail| Warning { file: None, line: None, detail }).collect()
 }
 
@@ -26,8 +25,4 @@ fn point_shadows(scene: &Scene) -> Option<String> {
     let casts = |kind: &LightKind| matches!(kind, LightKind::Point { .. });
     let any = scene.lights.iter().any(|light| light.shadow.is_some() && casts(&light.kind));
     any.then(|| "shadows of point lights are not drawn by this version".to_owned())
-}
-
-fn post(document: &Document) -> Option<String> {
-    (!document.post.is_empty()).then(|| "effects of post are not applied by this version".to_owned())
 }

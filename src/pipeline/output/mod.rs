@@ -3,7 +3,7 @@
 mod colors;
 mod wireframe;
 
-pub use colors::{encode_tile, write_radiance};
+pub use colors::{Row, encode_frame, encode_tile, write_radiance};
 
 use super::geometry::Bins;
 use super::geometry::setup::Triangle;

@@ -98,6 +98,7 @@ pub fn compile(
         meshes: meshes.into_iter().map(|loaded| loaded.mesh).collect(),
         materials: surfaces.materials,
         instances,
+        post: document.post.clone(),
         render: render_defaults(&document.render),
         warnings: Vec::new(),
         content: content(document, &assets),

@@ -25,6 +25,7 @@ mod light;
 mod limits;
 mod normals;
 mod oracle;
+mod post;
 mod relief;
 mod samples;
 mod shadows;

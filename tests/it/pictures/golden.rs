@@ -210,6 +210,41 @@ fn golden_backgrounds() {
 }
 
 #[test]
+fn golden_post() {
+    let mut document = still_life();
+    // Two and a half times as bright: highlights and white tiles are beyond 1.
+    document["lights"]["sun"]["intensity"] = json!(2.2);
+    let mut show = |name: &str, effect: Value| {
+        document["post"] = json!([effect]);
+        check(&format!("post/{name}"), &document);
+    };
+    show("aces_keeps_bright_tiles_apart", json!({ "type": "tonemap" }));
+    show("reinhard_never_reaches_white", json!({ "type": "tonemap", "operator": "reinhard" }));
+    show("exposure_alone_darkens", json!({ "type": "tonemap", "operator": "none", "exposure": 0.3 }));
+    show("a_blur_of_four_pixels", json!({ "type": "blur" }));
+    show("grey", json!({ "type": "grayscale" }));
+    show("a_vignette_darkens_the_corners", json!({ "type": "vignette", "amount": 0.9 }));
+    show("what_is_bright_glows", json!({ "type": "bloom", "threshold": 0.8, "intensity": 1, "radius": 10 }));
+    show("sharper", json!({ "type": "sharpen", "amount": 1.5 }));
+    let sepia = [[0.39, 0.77, 0.19, 0.0], [0.35, 0.69, 0.17, 0.0], [0.27, 0.53, 0.13, 0.0]];
+    show("a_matrix_makes_sepia", json!({ "type": "color_matrix", "matrix": sepia }));
+    show("a_kernel_embosses", json!({ "type": "kernel", "kernel": [[-2, -1, 0], [-1, 1, 1], [0, 1, 2]] }));
+    document["render"]["samples"] = json!(1);
+    let mut show = |name: &str, effect: Value| {
+        document["post"] = json!([effect]);
+        check(&format!("post/{name}"), &document);
+    };
+    show("without_fxaa_edges_are_stairs", json!({ "type": "tonemap" }));
+    document["post"] = json!([{ "type": "tonemap" }, { "type": "fxaa" }]);
+    check("post/fxaa_smooths_the_stairs", &document);
+    document["render"]["samples"] = json!(4);
+    document["environment"]["background"] = json!({ "type": "transparent" });
+    document["instances"].as_object_mut().expect("instances").remove("floor");
+    document["post"] = json!([{ "type": "tonemap" }, { "type": "blur" }]);
+    check("post/a_blurred_silhouette_fades_into_nothing", &document);
+}
+
+#[test]
 fn golden_outputs() {
     let mut document = still_life();
     document["camera"]["far"] = json!(9);

@@ -6,6 +6,7 @@ mod golden;
 mod lighting;
 mod maps;
 mod outputs;
+mod post;
 mod radiance;
 mod relief;
 mod sampler;

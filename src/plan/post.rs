@@ -1,0 +1,209 @@
+//! The chain of effects: what a document's `post` asks for, settled into passes.
+//!
+//! An effect that would change nothing is left out. Pointwise effects in a row are steps of one pass:
+//! those before the first effect that looks at its neighbours run in the tiles, so that a chain without
+//! any such effect needs no picture in linear light at all.
+
+mod weights;
+
+pub use weights::{Gaussian, Kernel, KernelRow};
+
+use crate::math::round_to_f32;
+use crate::scene::document::{PostEffect, TonemapOperator};
+
+/// The effects of a frame, in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PostChain {
+    /// Run in each tile, before anything else.
+    pub in_tiles: Vec<Pointwise>,
+    /// Each looks at the whole picture that the one before it left.
+    pub passes: Vec<PostPass>,
+}
+
+/// One pass over the picture, and what happens to its result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PostPass {
+    /// The pass.
+    pub effect: Neighbourhood,
+    /// On its result; after the last pass on the way to bytes.
+    pub then: Vec<Pointwise>,
+}
+
+/// An effect that needs one pixel's colour and nothing else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pointwise {
+    /// A factor: the tone mapper without a curve.
+    Expose(f32),
+    /// A curve from radiance to 0–1.
+    Tonemap {
+        /// Which.
+        curve: Curve,
+        /// Multiplies before the curve.
+        exposure: f32,
+    },
+    /// Towards luminance, 0–1.
+    Grayscale(f32),
+    /// Darker away from the centre.
+    Vignette {
+        /// Where nothing changes, in pixels from the picture's upper left corner.
+        centre: [f32; 2],
+        /// What the factor loses per square pixel of distance.
+        falloff: f32,
+    },
+    /// Rows of red, green, blue, and what is added.
+    ColorMatrix([[f32; 4]; 3]),
+}
+
+/// A tone mapper's curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
+    Aces,
+    /// x / (1 + x)
+    Reinhard,
+}
+
+/// An effect that looks at the pixels around.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Neighbourhood {
+    /// A Gaussian.
+    Blur(Gaussian),
+    /// The blurred light of what is brighter than a threshold, added.
+    Bloom {
+        /// Luminance from which it glows.
+        threshold: f32,
+        /// How much of the glow is added.
+        intensity: f32,
+        /// How far it reaches; `None`: no farther than the pixel itself.
+        gaussian: Option<Gaussian>,
+    },
+    /// Unsharp mask: how much of the difference to the blurred picture is added.
+    Sharpen(f32),
+    /// Fast approximate anti-aliasing.
+    Fxaa,
+    /// A correlation.
+    Kernel(Kernel),
+}
+
+/// An effect, settled.
+enum Step {
+    Pointwise(Pointwise),
+    Neighbourhood(Neighbourhood),
+}
+
+impl PostChain {
+    /// Columns of a strip: rows of a plane are filled up to whole strips, so that kernels need no tail.
+    pub const STRIP: usize = 32;
+
+    /// Settles `effects` for a picture of `width × height` pixels.
+    #[must_use]
+    pub fn new(effects: &[PostEffect], width: u32, height: u32) -> Self {
+        let mut chain = Self::default();
+        for step in effects.iter().filter_map(|effect| settle(effect, [width, height])) {
+            match (step, chain.passes.last_mut()) {
+                (Step::Neighbourhood(effect), _) => chain.passes.push(PostPass { effect, then: Vec::new() }),
+                (Step::Pointwise(step), None) => chain.in_tiles.push(step),
+                (Step::Pointwise(step), Some(pass)) => pass.then.push(step),
+            }
+        }
+        chain
+    }
+
+    /// What is left to do after the last pass.
+    #[must_use]
+    pub fn last_steps(&self) -> &[Pointwise] {
+        self.passes.last().map_or(&self.in_tiles, |pass| &pass.then)
+    }
+
+    /// Samples from one row of a plane to the next: whole strips, and never so many that one column's
+    /// samples all fall into the same few lines of a cache.
+    #[must_use]
+    pub fn stride(width: u32) -> usize {
+        let stride = (width as usize).next_multiple_of(Self::STRIP);
+        if stride.is_multiple_of(512) { stride + Self::STRIP } else { stride }
+    }
+
+    /// Planes beside those of the picture that the passes work in.
+    #[must_use]
+    pub fn spare_planes(&self) -> usize {
+        self.passes.iter().map(|pass| pass.effect.spare_planes()).max().unwrap_or(0)
+    }
+
+    /// Working memory of the passes: planes of f32 for red, green, blue, alpha if there is one, and
+    /// the spare ones.
+    #[must_use]
+    pub fn frame_bytes(&self, width: u32, height: u32, transparent: bool) -> u64 {
+        if self.passes.is_empty() {
+            return 0;
+        }
+        let planes = 3 + usize::from(transparent) + self.spare_planes();
+        planes as u64 * Self::stride(width) as u64 * u64::from(height) * 4
+    }
+}
+
+impl Neighbourhood {
+    fn spare_planes(&self) -> usize {
+        match self {
+            Self::Blur(_) | Self::Sharpen(_) | Self::Kernel(_) | Self::Bloom { gaussian: None, .. } => 1,
+            Self::Bloom { .. } | Self::Fxaa => 2,
+        }
+    }
+}
+
+/// An effect as a step; `None` if it would change nothing.
+fn settle(effect: &PostEffect, size: [u32; 2]) -> Option<Step> {
+    let pointwise = |step| Some(Step::Pointwise(step));
+    let neighbourhood = |effect| Some(Step::Neighbourhood(effect));
+    match effect {
+        PostEffect::Tonemap { operator: TonemapOperator::None, exposure: 1.0 } => None,
+        PostEffect::Tonemap { operator, exposure } => pointwise(tonemap(*operator, factor(*exposure))),
+        PostEffect::Grayscale { amount: 0.0 } | PostEffect::Vignette { amount: 0.0 } => None,
+        PostEffect::Grayscale { amount } => pointwise(Pointwise::Grayscale(round_to_f32(*amount))),
+        PostEffect::Vignette { amount } => pointwise(vignette(*amount, size)),
+        PostEffect::ColorMatrix { matrix } if *matrix == IDENTITY => None,
+        PostEffect::ColorMatrix { matrix } => {
+            pointwise(Pointwise::ColorMatrix(matrix.map(|row| row.map(round_to_f32))))
+        }
+        PostEffect::Blur { radius } => {
+            Gaussian::new(*radius).map(Neighbourhood::Blur).and_then(neighbourhood)
+        }
+        PostEffect::Bloom { intensity: 0.0, .. } | PostEffect::Sharpen { amount: 0.0 } => None,
+        PostEffect::Bloom { threshold, intensity, radius } => neighbourhood(Neighbourhood::Bloom {
+            threshold: factor(*threshold),
+            intensity: factor(*intensity),
+            gaussian: Gaussian::new(*radius),
+        }),
+        PostEffect::Sharpen { amount } => neighbourhood(Neighbourhood::Sharpen(factor(*amount))),
+        PostEffect::Fxaa => neighbourhood(Neighbourhood::Fxaa),
+        PostEffect::Kernel { kernel } => {
+            Kernel::new(kernel).map(Neighbourhood::Kernel).and_then(neighbourhood)
+        }
+    }
+}
+
+const IDENTITY: [[f64; 4]; 3] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+/// A number that may be larger than any f32, as the largest.
+fn factor(number: f64) -> f32 {
+    round_to_f32(number.min(f64::from(f32::MAX)))
+}
+
+fn tonemap(operator: TonemapOperator, exposure: f32) -> Pointwise {
+    match operator {
+        TonemapOperator::Aces => Pointwise::Tonemap { curve: Curve::Aces, exposure },
+        TonemapOperator::Reinhard => Pointwise::Tonemap { curve: Curve::Reinhard, exposure },
+        TonemapOperator::None => Pointwise::Expose(exposure),
+    }
+}
+
+/// The factor `1 − amount · (d / D)²`, d the distance from the centre, D that of a corner.
+fn vignette(amount: f64, size: [u32; 2]) -> Pointwise {
+    let [x, y] = size.map(|n| f64::from(n) / 2.0);
+    Pointwise::Vignette {
+        centre: [round_to_f32(x), round_to_f32(y)],
+        falloff: round_to_f32(amount / (x * x + y * y)),
+    }
+}
+
+#[cfg(test)]
+mod tests;
