@@ -80,6 +80,9 @@ pub struct Limits {
     pub total_bytes: u64,
     /// Texels along a side of a texture or shadow map: what graphics hardware takes. Fixed.
     pub texture_side: u32,
+    /// Texels of all shadow maps of a frame, those of each face of a point light among them: as many as
+    /// the largest map has alone, a gigabyte of depths. Fixed.
+    pub shadow_texels: u64,
     /// Lights of one scene: each costs time at every pixel. Fixed.
     pub lights: usize,
     /// Entries of any one map of the document. Fixed.
@@ -119,6 +122,7 @@ impl Default for Limits {
             scene_bytes: 2 << 30,
             total_bytes: 4 << 30,
             texture_side: 16_384,
+            shadow_texels: 1 << 28,
             lights: 1024,
             entries: 65_536,
             name_chars: MAX_NAME_CHARS,

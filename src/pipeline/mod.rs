@@ -131,7 +131,8 @@ fn draw_colors(
         _ if plan.post.passes.is_empty() => draw_bytes(plan, &shared, &mut timings, work)?,
         _ => draw_and_post(plan, &shared, &mut timings, work)?,
     };
-    Ok(Frame::new(plan, pixels, Stats::new(bins, shaded, maps.len()), timings))
+    let maps = plan.shadows.iter().map(|pass| pass.faces().len()).sum();
+    Ok(Frame::new(plan, pixels, Stats::new(bins, shaded, maps), timings))
 }
 
 /// Tiles that end in bytes. Returns how many fragments were shaded, too.

@@ -36,7 +36,7 @@ pub struct Stats {
     pub geometry: Counts,
     /// Fragments shaded.
     pub shaded: u64,
-    /// Shadow maps drawn.
+    /// Shadow maps drawn; each face around a point light is one.
     pub shadow_maps: u64,
 }
 

@@ -16,7 +16,7 @@ pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
 pub use opacity::{Alpha, AlphaTest, ItemTest, Opacity, Transparency};
 pub use post::{Curve, Gaussian, Kernel, KernelRow, Neighbourhood, Pointwise, PostChain, PostPass};
 pub use request::{FrameRequest, Output, QueryFault};
-pub use shadow::{CasterTest, ShadowPass, orthonormal_basis};
+pub use shadow::{CasterTest, Face, Filter, Maps, Pcss, ShadowPass, orthonormal_basis};
 
 use crate::limits::Limits;
 use crate::math::View;
@@ -48,7 +48,7 @@ pub struct Plan {
     pub ambient: Vec3,
     /// Lights that shine.
     pub lights: Vec<PlannedLight>,
-    /// Shadow maps to draw.
+    /// Shadows to draw: those of the lights that have one.
     pub shadows: Vec<ShadowPass>,
     /// What is drawn where nothing else is.
     pub background: Background,
@@ -175,16 +175,17 @@ impl Plan {
         let scene = self.scene.clone();
         let receives = self.draws.iter().any(|draw| draw.surface.receives_shadow && draw.surface.lit);
         for light in scene.lights.iter().filter(|light| light.enabled && light.radiance != Vec3::ZERO) {
-            let pass = match (light.kind, light.shadow) {
-                (LightKind::Directional { direction }, Some(shadow)) if receives && scene.render.shadows => {
-                    shadow::plan(&scene, self.t, direction, &shadow)
-                }
-                _ => None,
+            let rays = match light.kind {
+                LightKind::Directional { direction } => shadow::Rays::Parallel(direction),
+                LightKind::Point { position, .. } => shadow::Rays::FromPoint(position),
             };
+            let shadow = light.shadow.filter(|_| receives && scene.render.shadows);
+            let pass = shadow.and_then(|shadow| shadow::plan(&scene, self.t, rays, &shadow));
             let shadow = match pass {
                 Some(pass) => {
                     self.charge(pass.frame_bytes(), limits)?;
                     self.shadows.push(pass);
+                    check_shadow_texels(&self.shadows, limits)?;
                     Some(number(self.shadows.len() - 1))
                 }
                 None => None,
@@ -244,6 +245,15 @@ fn check_picture(width: u32, height: u32, limits: &Limits) -> Result<(), PlanErr
         return too_large("the number of pixels", limits.picture_pixels, pixels);
     }
     Ok(())
+}
+
+fn check_shadow_texels(shadows: &[ShadowPass], limits: &Limits) -> Result<(), PlanError> {
+    let value = shadows.iter().map(ShadowPass::texels).sum();
+    if value <= limits.shadow_texels {
+        return Ok(());
+    }
+    let what = "the number of texels of all shadow maps".to_owned();
+    Err(PlanError::TooLarge { what, limit: limits.shadow_texels, value, setting: None })
 }
 
 fn background(scene: &Scene, request: &FrameRequest) -> Result<Background, PlanError> {

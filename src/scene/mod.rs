@@ -14,7 +14,6 @@ pub mod files;
 pub mod framing;
 mod import_model;
 mod limits_check;
-mod not_yet;
 pub mod patch;
 pub mod store;
 mod summary;

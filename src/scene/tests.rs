@@ -245,15 +245,6 @@ fn singular_scales_compile() {
 }
 
 #[test]
-fn what_is_not_drawn_yet_is_said() {
-    let scene = scene(&document::tests::full());
-    let details: Vec<_> = scene.warnings.iter().map(|warning| warning.detail.as_str()).collect();
-    for word in ["pcss", "point lights"] {
-        assert!(details.iter().any(|detail| detail.contains(word)), "{word} in {details:?}");
-    }
-}
-
-#[test]
 fn maps_without_texture_coordinates_and_parallel_up_are_warned_of() {
     let mut json = cornered(json!({ "mesh": "m", "material": "tiled" }));
     json["textures"] = json!({ "t": { "checker": {} } });

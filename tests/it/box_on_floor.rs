@@ -61,10 +61,10 @@ impl BoxOnFloor {
         })
     }
 
-    /// Side of a texel in world units, the larger one.
-    fn texel(&self) -> f64 {
-        let plan = plan(&scene(&self.document()), &FrameRequest::default());
-        let scale = plan.shadows[0].view.scale;
+    /// Side of a texel of the document's map in world units, the larger one.
+    pub fn texel(document: &Value) -> f64 {
+        let plan = plan(&scene(document), &FrameRequest::default());
+        let scale = plan.shadows[0].faces()[0].view.scale;
         256.0 / scale[0].min(scale[1])
     }
 
@@ -112,13 +112,11 @@ impl BoxOnFloor {
         all.into_iter().all(|d| reaches(d) == here).then_some(here)
     }
 
-    /// Compares every pixel whose shadow is beyond doubt: outside the bound on the displacement of
-    /// the shadow's edge, 2√2 · ½ texel across the light, and half a pixel.
-    pub fn assert_as_cast(&self, case: &str) {
-        let apart = std::f64::consts::SQRT_2 * self.texel();
-        let picture = Picture::new(frame(&scene(&self.document()), &FrameRequest::default()));
-        let (mut acne, mut leaks, mut lit, mut dark) = (0, 0, 0, 0);
-        for (x, y, pixel) in picture.iter() {
+    /// Every pixel whose shadow is beyond doubt, and whether it is lit: half a pixel from any outline,
+    /// and `apart` across the light from the border of any shadow.
+    pub fn beyond_doubt(&self, apart: f64) -> Vec<(u32, u32, bool)> {
+        let mut found = Vec::new();
+        for (x, y) in self.camera.pixels() {
             let what = |ray: Ray| self.seen(ray).0;
             let Some(seen) = self.camera.steady(x, y, 0.5, what) else {
                 continue;
@@ -129,16 +127,26 @@ impl BoxOnFloor {
                 Seen::Floor => DVec3::Y,
                 Seen::Box(normal) => normal,
             };
-            match self.lit(p, normal, apart) {
-                Some(true) => {
-                    lit += 1;
-                    acne += usize::from(pixel[0] == 0);
-                }
-                Some(false) => {
-                    dark += 1;
-                    leaks += usize::from(pixel[0] != 0);
-                }
-                None => {}
+            found.extend(self.lit(p, normal, apart).map(|lit| (x, y, lit)));
+        }
+        found
+    }
+
+    /// Compares every pixel whose shadow is beyond doubt: outside the bound on the displacement of
+    /// the shadow's edge, 2√2 · ½ texel across the light, and half a pixel.
+    pub fn assert_as_cast(&self, case: &str) {
+        let document = self.document();
+        let apart = std::f64::consts::SQRT_2 * Self::texel(&document);
+        let picture = Picture::new(frame(&scene(&document), &FrameRequest::default()));
+        let (mut acne, mut leaks, mut lit, mut dark) = (0, 0, 0, 0);
+        for (x, y, reached) in self.beyond_doubt(apart) {
+            let pixel = picture.at(x, y);
+            if reached {
+                lit += 1;
+                acne += usize::from(pixel[0] == 0);
+            } else {
+                dark += 1;
+                leaks += usize::from(pixel[0] != 0);
             }
         }
         none_of(case, "dark pixels in the light", acne, lit);

@@ -13,7 +13,7 @@ use glam::{DVec3, Vec3};
 pub struct LightSource {
     radiance: Vec3,
     place: Place,
-    /// Index of its shadow map.
+    /// Index of its shadow.
     pub shadow: Option<usize>,
 }
 

@@ -43,7 +43,7 @@ pub struct Lighting<'a> {
     pub ambient: Vec3,
     /// Every light that shines.
     pub lights: Vec<LightSource>,
-    /// The maps that the lights' shadows read.
+    /// The lights' shadows.
     pub maps: &'a [ShadowMap],
     /// The camera.
     pub view: &'a View,

@@ -11,7 +11,7 @@ mod surfaces;
 
 use super::assets::{Assets, Loader};
 use super::{
-    Camera, Document, Fault, Files, Instance, RenderDefaults, Scene, Warning, framing, limits_check, not_yet,
+    Camera, Document, Fault, Files, Instance, RenderDefaults, Scene, Warning, framing, limits_check,
 };
 use crate::limits::{Limits, MAX_COORDINATE};
 use crate::math::Bounds;
@@ -106,7 +106,6 @@ pub fn compile(
     check_reach(&scene)?;
     warnings.extend(surfaces.warnings);
     warnings.extend(camera_warnings(&document.camera));
-    warnings.extend(not_yet::warnings(document, &scene));
     let warnings = without_repeats(warnings);
     Ok(Compiled { scene: Scene { warnings, ..scene }, assets })
 }

@@ -1,5 +1,8 @@
 //! Shadow maps in stiff settings: grazing light, huge floors, flat scenes, tiny maps.
 
+mod cube;
+mod kernels;
+
 use crate::box_on_floor::BoxOnFloor;
 use crate::closed_form::Camera;
 use crate::draw::{Picture, frame, plan, scene, work};
@@ -8,6 +11,7 @@ use fearless_simd::Level;
 use glam::DVec3;
 use rasterd::limits::Limits;
 use rasterd::pipeline::shade::BLOCK;
+use rasterd::pipeline::shade::varyings::Receivers;
 use rasterd::pipeline::shadow::{ShadowMap, render_maps};
 use rasterd::plan::FrameRequest;
 use rasterd::scene::{Document, compile};
@@ -231,9 +235,9 @@ fn maps_of_any_size_are_defined() {
 
 /// What a map says of one place: texels from its centre, and depth.
 fn visible(map: &ShadowMap, place: [f32; 3]) -> f32 {
-    let coordinates = place.map(|c| [c; BLOCK]);
+    let receivers = Receivers { place: place.map(|c| [c; BLOCK]), ..Receivers::default() };
     let mut visibility = [0.5; BLOCK];
-    map.visibility(Level::new(), &coordinates, 1, &mut visibility);
+    map.visibility(Level::new(), &receivers, 1, &mut visibility);
     visibility[0]
 }
 
@@ -274,4 +278,35 @@ fn outside_the_map_is_lit_and_its_border_is_part_of_it() {
     // Before all casters, and before the light itself.
     assert_eq!(visible(map, [0.0, 0.0, 1.0]), 1.0);
     assert_eq!(visible(map, [0.0, 0.0, 7.0]), 1.0);
+}
+
+/// B37: maps are fitted to the scene, so they do not know the camera.
+#[test]
+fn maps_are_the_same_wherever_the_camera_is() {
+    let lamp = json!({ "type": "point", "position": [-1, 2, 1], "shadow": { "resolution": 64 } });
+    let maps = |step: u32, draw: bool| {
+        let aside = f64::from(step) * 0.004;
+        let camera = Camera::perspective([-2.2 + aside, 4.2, 2.4 - aside], [-0.2, 0.2, -0.3], 50.0, 128, 96);
+        let mut document = BoxOnFloor { camera, resolution: 100, ..setting() }.document();
+        document["lights"]["lamp"] = lamp.clone();
+        let plan = plan(&scene(&document), &FrameRequest::default());
+        let views: Vec<_> = plan.shadows.iter().flat_map(|pass| pass.faces()).map(|face| face.view).collect();
+        (views, draw.then(|| render_maps(&plan.shadows, &work()).expect("nobody cancels")))
+    };
+    let (views, first) = maps(0, true);
+    assert!(views.len() > 2, "a sun and sides of a lamp");
+    let moved = (1..100).filter(|&step| maps(step, false).0 != views).count();
+    none_of("B37 100 cameras", "views of lights that moved", moved, 99);
+    let differing = [1, 50, 99].into_iter().filter(|&step| maps(step, true).1 != first).count();
+    none_of("B37 100 cameras", "differing maps", differing, 3);
+}
+
+#[test]
+fn more_texels_than_a_frame_may_have_are_refused() {
+    let mut document = setting().document();
+    let lamp = |x: u32| json!({ "type": "point", "position": [x, 2, 1], "shadow": { "filter": "hard", "resolution": 8192 } });
+    document["lights"] = (0..3).map(|i| (format!("lamp {i}"), lamp(i))).collect();
+    let refused = rasterd::plan::Plan::new(&scene(&document), &FrameRequest::default(), &Limits::default());
+    let error = refused.expect_err("too many texels").to_string();
+    assert!(error.contains("texels of all shadow maps"), "{error}");
 }

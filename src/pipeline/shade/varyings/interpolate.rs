@@ -1,7 +1,7 @@
 //! Interpolation: records and fragments in, attributes of a block out.
 
-use super::Source;
 use super::records::{AREA, EDGES, ORIGIN, Records, SCALE, SHADOW};
+use super::{Receivers, Source};
 use crate::math::simd::*;
 use crate::pipeline::shade::texture::Coordinates;
 use crate::pipeline::shade::{BLOCK, Fragment};
@@ -23,8 +23,8 @@ pub struct Varyings {
     pub uv_per_world: [[f32; BLOCK]; 2],
     /// Vertex colour, linear RGB.
     pub color: [[f32; BLOCK]; 3],
-    /// For each shadow map: texel x and y from the map's centre, and depth.
-    pub shadow: Vec<[[f32; BLOCK]; 3]>,
+    /// As each light with a shadow sees them.
+    pub shadow: Vec<Receivers>,
 }
 
 impl Default for Varyings {
@@ -109,7 +109,7 @@ pub fn interpolate(
     fragments: &[Fragment],
     out: &mut Varyings,
 ) {
-    out.shadow.resize(source.shadows.len(), [[0.0; BLOCK]; 3]);
+    out.shadow.resize(source.shadows.len(), Receivers::default());
     dispatch!(level, simd => interpolate_kernel(simd, records, source, fragments, out));
 }
 
@@ -171,9 +171,12 @@ fn interpolate_eight<S: Simd>(
     let share = f64x8::splat(simd, 1.0) / sum;
     let weights = [narrow(l[0] * share), narrow(l[1] * share), narrow(l[2] * share)];
 
-    for (map, coordinates) in out.shadow.iter_mut().enumerate() {
+    for (map, receivers) in out.shadow.iter_mut().enumerate() {
+        for (c, plane) in receivers.plane.iter_mut().enumerate() {
+            lanes.single(simd, layout.shadow_planes + 3 * map + c).store_slice(&mut plane[at..at + LANES]);
+        }
         let field = SHADOW + 9 * map;
-        for (c, coordinate) in coordinates.iter_mut().enumerate() {
+        for (c, coordinate) in receivers.place.iter_mut().enumerate() {
             let difference = e1 * lanes.double(simd, field + 3 + c) + e2 * lanes.double(simd, field + 6 + c);
             narrow(lanes.double(simd, field + c) + difference * share)
                 .store_slice(&mut coordinate[at..at + LANES]);
@@ -260,16 +263,16 @@ fn lift_to_round<S: Simd>(simd: S, lanes: &Lanes, weights: &[f32x8<S>; 3], posit
     min(lift, lanes.single(simd, layout.normal + 12))
 }
 
-/// Moves eight receivers by `lift` along their normals, in the coordinates of every shadow map.
+/// Moves eight receivers by `lift` along their normals, as every light sees them.
 #[inline(always)]
 fn lift_receivers<S: Simd>(simd: S, source: &Source, lift: f32x8<S>, out: &mut Varyings, at: usize) {
     if lift.simd_gt(f32x8::splat(simd, 0.0)).all_false() {
         return;
     }
     let offset = Vec3x8::load(simd, &out.normal, at).scale(lift);
-    for (frame, coordinates) in source.shadows.iter().zip(&mut out.shadow) {
+    for (frame, receivers) in source.shadows.iter().zip(&mut out.shadow) {
         let columns = [frame.linear.x_axis, frame.linear.y_axis, frame.linear.z_axis].map(|c| c.as_vec3());
-        for (row, coordinate) in coordinates.iter_mut().enumerate() {
+        for (row, coordinate) in receivers.place.iter_mut().enumerate() {
             let moved = offset.x * columns[0][row] + offset.y * columns[1][row] + offset.z * columns[2][row];
             let old = f32x8::from_slice(simd, &coordinate[at..at + LANES]);
             (old + moved).store_slice(&mut coordinate[at..at + LANES]);

@@ -11,25 +11,55 @@ mod records;
 pub use interpolate::{Varyings, interpolate};
 pub use records::Records;
 
+use super::BLOCK;
 use crate::math::{Projection, View};
 use crate::plan::{Item, Surface};
 use glam::{DMat3, DVec3};
 
-/// A shadow map's coordinates as a varying: what a light needs to know of a receiver.
+/// A light's view of a receiver as a varying: what its shadow maps are asked with.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowFrame {
-    /// Anchored space → (texel x, texel y, depth), linear part; texels count from the map's centre.
+    /// Anchored space → [`Receivers::place`], linear part.
     pub linear: DMat3,
     /// Anchored position that it takes to zero.
     pub origin: DVec3,
-    /// The way the light travels.
-    pub direction: DVec3,
-    /// Normal offset per |component| of the receiver's unit normal along the map's x and y axes, in
-    /// world units: just enough that no texel of a plane shadows the plane (numerics: B33).
-    pub offset: [DVec3; 2],
-    /// Depth by which every receiver moves towards the light beside that: half a texel, so that a
-    /// neighbour that rises by up to 45° in the same texel does not shadow it either.
-    pub clearance: f64,
+    /// What depends on how the light travels.
+    pub rays: RayFrame,
+}
+
+/// What moves a receiver off its own surface before it is looked up.
+#[derive(Clone, Copy, Debug)]
+pub enum RayFrame {
+    /// Parallel light: its texels have one size, so triangles are moved as a whole.
+    Parallel {
+        /// The way the light travels.
+        direction: DVec3,
+        /// Normal offset per |component| of the receiver's unit normal along the map's x and y axes, in
+        /// world units: just enough that no texel of a plane shadows the plane (numerics: B33).
+        offset: [DVec3; 2],
+        /// Depth by which every receiver moves towards the light beside that: half a texel, so that a
+        /// neighbour that rises by up to 45° in the same texel does not shadow it either.
+        clearance: f64,
+    },
+    /// A point light: its texels grow with the distance, so each receiver is moved on its own.
+    FromPoint,
+}
+
+/// A block of receivers as one light sees them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Receivers {
+    /// Parallel light: texel x and y from the map's centre, and depth. Point light: position relative
+    /// to it, in world axes.
+    pub place: [[f32; BLOCK]; 3],
+    /// The plane that each lies in. Parallel light: depth gained per texel along x and y, and 0. Point
+    /// light: the vector whose dot product with every point of the plane, relative to the light, is 1.
+    pub plane: [[f32; BLOCK]; 3],
+}
+
+impl Default for Receivers {
+    fn default() -> Self {
+        Self { place: [[0.0; BLOCK]; 3], plane: [[0.0; BLOCK]; 3] }
+    }
 }
 
 /// Everything about an item that its triangles' records need.

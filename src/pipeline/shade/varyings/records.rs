@@ -1,16 +1,17 @@
 //! One record a visible triangle: everything that interpolation reads, laid out for it.
 
 use super::corners::{CornerFrames, Corners};
-use super::{ShadowFrame, Source};
+use super::{RayFrame, ShadowFrame, Source};
 use crate::math::{Projection, round_to_f32};
 use crate::pipeline::geometry::bin::Chunk;
 use crate::pipeline::geometry::setup::Triangle;
 use crate::plan::{Relief, Surface};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 
 /// Where the parts of a record are. Parts that a surface does not need have no room.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
+    pub(super) shadow_planes: usize,
     pub(super) normal: usize,
     pub(super) position: usize,
     pub(super) uv: usize,
@@ -31,9 +32,10 @@ impl Layout {
             at += if needed { n } else { 0 };
             start
         };
-        // Three corner normals, the geometric one, and how far they round the triangle; three
-        // positions; the numerators of the derivatives of (u, v); three directions of u, then of v; u and
-        // v to a world unit at three corners; three colours.
+        // The plane as each light sees it; three corner normals, the geometric one, and how far they
+        // round the triangle; three positions; the numerators of the derivatives of (u, v); three
+        // directions of u, then of v; u and v to a world unit at three corners; three colours.
+        let shadow_planes = room(true, 3 * shadows);
         let normal = room(surface.needs_normal(), 13);
         let position = room(surface.lit, 9);
         let uv = room(surface.needs_uv(), 6);
@@ -42,7 +44,18 @@ impl Layout {
         let color = room(surface.vertex_colors, 9);
         let uv_place = SHADOW + 9 * shadows;
         let doubles = uv_place + if surface.needs_uv() { 6 } else { 0 };
-        Self { normal, position, uv, tangent, uv_per_world, color, singles: at, uv_place, doubles }
+        Self {
+            shadow_planes,
+            normal,
+            position,
+            uv,
+            tangent,
+            uv_per_world,
+            color,
+            singles: at,
+            uv_place,
+            doubles,
+        }
     }
 }
 
@@ -130,7 +143,8 @@ impl Records {
         self.doubles.extend(scale);
     }
 
-    /// Map coordinates at corner 0, and how much corners 1 and 2 differ from them, times their scale.
+    /// What a light sees: the place of corner 0, how much those of corners 1 and 2 differ from it, times
+    /// their scale; and the plane.
     fn push_shadow(
         &mut self,
         source: &Source,
@@ -139,16 +153,25 @@ impl Records {
         normal: DVec3,
         scale: [f64; 3],
     ) {
-        // The offset points to the side that the light comes from.
-        let towards = if normal.dot(frame.direction) > 0.0 { -1.0 } else { 1.0 };
-        let along = |axis: usize| normal.dot(frame.offset[axis]).abs();
-        let lift = normal * (towards * (along(0) + along(1)));
-        let base = source.eye - frame.origin + lift;
-        let clearance = DVec3::new(0.0, 0.0, frame.clearance);
+        let from_origin = source.eye - frame.origin;
+        let (base, clearance, plane) = match frame.rays {
+            RayFrame::Parallel { direction, offset, clearance } => {
+                // The offset points to the side that the light comes from.
+                let towards = if normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };
+                let along = |axis: usize| normal.dot(offset[axis]).abs();
+                let lift = normal * (towards * (along(0) + along(1)));
+                (from_origin + lift, clearance, depth_per_texel(&frame.linear, normal))
+            }
+            RayFrame::FromPoint => {
+                (from_origin, 0.0, plane_over_distance(normal, corners.positions.map(|p| p + from_origin)))
+            }
+        };
+        let clearance = DVec3::new(0.0, 0.0, clearance);
         let [s0, s1, s2] = corners.positions.map(|p| frame.linear * (p + base) + clearance);
         for v in [s0, (s1 - s0) * scale[1], (s2 - s0) * scale[2]] {
             self.doubles.extend_from_slice(&v.to_array());
         }
+        self.push_vec3(plane.as_vec3());
     }
 
     /// Coordinates at corner 0, how much corners 1 and 2 differ from them, times their scale, and the
@@ -177,6 +200,25 @@ impl Records {
             self.singles.extend([along_x, along_y, cross].map(|n| round_to_f32(n * 256.0)));
         }
     }
+}
+
+/// Planes that lie closer to the light's rays than this (as a sine) count as no closer: their slope
+/// stays a number.
+const GRAZING: f64 = 1e-6;
+
+/// Depth that a plane gains per texel along x and y of a map with these rows, which are orthogonal.
+fn depth_per_texel(linear: &DMat3, normal: DVec3) -> DVec3 {
+    let along = |axis: usize| linear.row(axis).dot(normal) / linear.row(axis).length_squared();
+    let depth = along(2);
+    let depth = depth.abs().max(GRAZING / linear.row(2).length()).copysign(depth);
+    DVec3::new(-along(0) / depth, -along(1) / depth, 0.0)
+}
+
+/// The normal of the plane through `corners`, divided by the plane's distance from zero.
+fn plane_over_distance(normal: DVec3, corners: [DVec3; 3]) -> DVec3 {
+    let distance = normal.dot(corners[0]);
+    let reach = corners.iter().map(|p| p.length()).fold(f64::MIN_POSITIVE, f64::max);
+    normal / distance.abs().max(GRAZING * reach).copysign(distance)
 }
 
 /// The factors kᵢ of the edge functions: `lᵢ = kᵢ Eᵢ` is in 0–1 and proportional to the perspective

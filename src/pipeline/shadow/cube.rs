@@ -1,0 +1,367 @@
+//! Shadows of a point light: six maps, one a side of a cube around it.
+//!
+//! Everything is measured in the receiver's own distance along the axis of its side, so it has no
+//! unit. A tap is a direction; the surface seen along it hides the receiver if it is nearer to the light
+//! than the point of the receiver's plane in that direction. So no kernel ends at the border of a side.
+
+mod kernel;
+mod receiver;
+
+use super::depth_map::{DepthMap, TexelBox, float};
+use super::disc::{Disc, EightPoints};
+use super::pyramid::{DepthRange, Pyramid};
+use super::{HALF_TEXEL, PCF_TAPS, Verdict, bits, sum_of_lanes};
+use crate::math::round_to_f32;
+use crate::math::simd::*;
+use crate::pipeline::shade::{BLOCK, varyings::Receivers};
+use crate::pipeline::work::{Cancelled, Work};
+use crate::plan::{Face, Filter, Pcss, ShadowPass};
+use kernel::{Kernel, Spot};
+use receiver::{Lifted, Receiver};
+
+/// The maps around a point light. Sides: +x, −x, +y, −y, +z, −z.
+#[derive(Debug, PartialEq)]
+pub struct CubeMap {
+    /// `None` where no caster is or no receiver can be.
+    sides: [Option<DepthMap>; 6],
+    resolution: u32,
+    lens: Lens,
+    filter: CubeFilter,
+}
+
+/// What all sides have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Lens {
+    /// Texels per unit of x / w.
+    focal_length: f32,
+    /// Depth is `near / w`.
+    near: f32,
+    /// Normal offset per unit of the receiver's obliqueness, just enough that no texel of a plane
+    /// shadows the plane, and half a texel.
+    offset: f32,
+    clearance: f32,
+}
+
+#[derive(Debug, PartialEq)]
+enum CubeFilter {
+    Hard,
+    Pcf { pyramids: Pyramids, disc: Disc, kernel: PcfKernel },
+    Pcss { pyramids: Pyramids, search: Disc, filter: Disc, size: SoftKernel },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PcfKernel {
+    /// Tangent of the angle from its centre to its rim: its radius in texels in the middle of a side.
+    tangent: f32,
+    bias: f32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SoftKernel {
+    /// The light's, in world units.
+    light_radius: f32,
+    /// Tangent of the angle from its centre to its rim; `None`: as wide as the nearest caster demands.
+    search: Option<f32>,
+    bias: f32,
+}
+
+type Pyramids = [Option<Pyramid>; 6];
+
+/// How often the search for blockers is narrowed to what the nearest caster below it demands.
+const NARROWINGS: usize = 3;
+
+impl CubeMap {
+    /// Draws the faces of `pass`.
+    pub(super) fn draw(pass: &ShadowPass, faces: &[Face], work: &Work) -> Result<Self, Cancelled> {
+        let mut sides = [const { None }; 6];
+        for face in faces {
+            sides[face.side] = Some(DepthMap::draw(face, work)?);
+        }
+        let view = &faces.first().expect("a cube without faces is not planned").view;
+        let focal_length = view.scale[0] / 256.0;
+        // A receiver that moves along its normal may move away from the axis of its side: its texel
+        // grows by as much as the offset is of the distance.
+        let reach = HALF_TEXEL * pass.bias / focal_length * (1.0 + 1.5 / focal_length);
+        let lens = Lens {
+            focal_length: round_to_f32(focal_length),
+            near: round_to_f32(view.near),
+            offset: round_to_f32(reach),
+            clearance: round_to_f32(0.5 * pass.bias / focal_length),
+        };
+        let filter = CubeFilter::new(pass, &sides, focal_length, work)?;
+        Ok(Self { sides, resolution: view.width, lens, filter })
+    }
+
+    #[inline(always)]
+    pub(super) fn visibility<S: Simd>(
+        &self,
+        simd: S,
+        receivers: &Receivers,
+        asked: u64,
+        out: &mut [f32; BLOCK],
+    ) {
+        for at in (0..BLOCK).step_by(LANES) {
+            let asked = asked >> at & 0xff;
+            if asked == 0 {
+                continue;
+            }
+            let lifted = Lifted::load(simd, receivers, at, &self.lens);
+            let out = &mut out[at..at + LANES];
+            match &self.filter {
+                CubeFilter::Hard => self.hard(simd, &lifted).store_slice(out),
+                CubeFilter::Pcf { pyramids, disc, kernel } => {
+                    for lane in bits(asked) {
+                        let receiver = lifted.lane(lane);
+                        out[lane] = self.filtered(simd, pyramids, disc, &receiver, &kernel.around(&receiver));
+                    }
+                }
+                CubeFilter::Pcss { pyramids, search, filter, size } => {
+                    for lane in bits(asked) {
+                        out[lane] = self.soft(simd, pyramids, search, filter, &lifted.lane(lane), size);
+                    }
+                }
+            }
+        }
+    }
+
+    /// One tap for each of eight receivers.
+    #[inline(always)]
+    fn hard<S: Simd>(&self, simd: S, lifted: &Lifted<S>) -> f32x8<S> {
+        let ratio = self.ratio(simd, &Spot::of(simd, lifted.place), lifted.scale);
+        let blocked = ratio.simd_gt(f32x8::splat(simd, self.lens.nearest_blocker()));
+        blocked.select(f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0))
+    }
+
+    /// In each of eight directions: the length of the direction's vector over the distance of what is
+    /// seen there; 0 where nothing is.
+    #[inline(always)]
+    fn ratio<S: Simd>(&self, simd: S, spot: &Spot<S>, scale: f32x8<S>) -> f32x8<S> {
+        let corner = float(self.resolution) * 0.5;
+        let number = always(
+            #[inline(always)]
+            |tangent: f32x8<S>| {
+                let from_corner = (tangent * self.lens.focal_length + corner).floor();
+                let side = f32x8::splat(simd, float(self.resolution));
+                let index: i32x8<S> = min(max(from_corner, f32x8::splat(simd, -1.0)), side).to_int_precise();
+                index
+            },
+        );
+        let (x, y) = (number(spot.right), number(f32x8::splat(simd, 0.0) - spot.up));
+        let depth = f32x8::from_fn(
+            simd,
+            #[inline(always)]
+            |lane| match &self.sides[spot.side[lane].cast_unsigned() as usize % 6] {
+                Some(map) => map.texel(x[lane], y[lane]),
+                None => 0.0,
+            },
+        );
+        depth * (spot.distance * scale)
+    }
+
+    /// The part of the kernel's taps that is lit: exactly 1 if all are, exactly 0 if none is.
+    #[inline(always)]
+    fn filtered<S: Simd>(
+        &self,
+        simd: S,
+        pyramids: &Pyramids,
+        disc: &Disc,
+        receiver: &Receiver,
+        kernel: &Kernel,
+    ) -> f32 {
+        match kernel.verdict(receiver, &self.lens, self.range_under(pyramids, receiver, kernel)) {
+            Verdict::Lit => 1.0,
+            Verdict::Dark => 0.0,
+            Verdict::Mixed => self.lit_part(simd, disc, receiver, kernel),
+        }
+    }
+
+    /// The same from the taps alone.
+    #[inline(always)]
+    fn lit_part<S: Simd>(&self, simd: S, disc: &Disc, receiver: &Receiver, kernel: &Kernel) -> f32 {
+        let mut count = 0;
+        self.for_each_tap(
+            simd,
+            disc,
+            receiver,
+            kernel,
+            always(
+                #[inline(always)]
+                |blocked: mask32x8<S>, _| count += blocked.to_bitmask().count_ones(),
+            ),
+        );
+        (disc.count() - float(count)) / disc.count()
+    }
+
+    /// Soft shadow: as wide as the blockers above the receiver make it.
+    #[inline(always)]
+    fn soft<S: Simd>(
+        &self,
+        simd: S,
+        pyramids: &Pyramids,
+        search: &Disc,
+        filter: &Disc,
+        receiver: &Receiver,
+        size: &SoftKernel,
+    ) -> f32 {
+        // No caster is nearer than depth 1.
+        let mut nearest = receiver.scale * receiver.distance;
+        let mut kernel = size.search(receiver, nearest);
+        for _ in 0..NARROWINGS {
+            let range = self.range_under(pyramids, receiver, &kernel);
+            match kernel.verdict(receiver, &self.lens, range) {
+                Verdict::Lit => return 1.0,
+                // The filter would lie within the search.
+                Verdict::Dark if size.search.is_none() => return 0.0,
+                _ => {}
+            }
+            let ratio = range.greatest * (receiver.scale * (receiver.distance + kernel.reach()));
+            if size.search.is_some() || ratio >= nearest {
+                break;
+            }
+            nearest = ratio;
+            kernel = size.search(receiver, nearest);
+        }
+        let Some(mean) = self.mean_blocker(simd, search, receiver, &kernel) else { return 1.0 };
+        let ratio = if size.search.is_none() && mean > nearest { nearest } else { mean };
+        self.filtered(simd, pyramids, filter, receiver, &size.kernel(receiver, ratio))
+    }
+
+    /// Mean of the distance ratios of what the kernel's taps find before the receiver.
+    #[inline(always)]
+    fn mean_blocker<S: Simd>(
+        &self,
+        simd: S,
+        disc: &Disc,
+        receiver: &Receiver,
+        kernel: &Kernel,
+    ) -> Option<f32> {
+        let zero = f32x8::splat(simd, 0.0);
+        let (mut sum, mut count) = (zero, 0);
+        self.for_each_tap(
+            simd,
+            disc,
+            receiver,
+            kernel,
+            always(
+                #[inline(always)]
+                |blocked: mask32x8<S>, ratio: f32x8<S>| {
+                    sum += blocked.select(ratio, zero);
+                    count += blocked.to_bitmask().count_ones();
+                },
+            ),
+        );
+        (count > 0).then(|| sum_of_lanes(sum) / float(count))
+    }
+
+    /// Calls `f` with what blocks the light of eight taps, and their distance ratios.
+    ///
+    /// A tap asks about the point of the receiver's plane in its direction; where that lies farther from
+    /// the light than the tap, about the tap itself: what lies behind a point cannot shade it.
+    #[inline(always)]
+    fn for_each_tap<S: Simd>(
+        &self,
+        simd: S,
+        disc: &Disc,
+        receiver: &Receiver,
+        kernel: &Kernel,
+        mut f: impl FnMut(mask32x8<S>, f32x8<S>),
+    ) {
+        let [a, b] = kernel.axes;
+        let centre = Vec3x8::splat(simd, receiver.place);
+        let scale = f32x8::splat(simd, receiver.scale);
+        let (slope_a, slope_b) = (receiver.plane.dot(a), receiver.plane.dot(b));
+        let zero = f32x8::splat(simd, 0.0);
+        disc.for_each_eight(
+            simd,
+            always(
+                #[inline(always)]
+                |points: EightPoints<S>| {
+                    let tap = Vec3x8 {
+                        x: centre.x + (points.x * a.x + points.y * b.x),
+                        y: centre.y + (points.x * a.y + points.y * b.y),
+                        z: centre.z + (points.x * a.z + points.y * b.z),
+                    };
+                    let slope = max(points.x * slope_a + points.y * slope_b, zero);
+                    let plane = (slope + self.lens.nearest_blocker()) + points.radius * kernel.rise;
+                    let ratio = self.ratio(simd, &Spot::of(simd, tap), scale);
+                    f(points.counts & ratio.simd_gt(plane), ratio);
+                },
+            ),
+        );
+    }
+
+    /// A range that holds every depth that taps of the kernel can meet, on whichever side.
+    #[inline(always)]
+    fn range_under(&self, pyramids: &Pyramids, receiver: &Receiver, kernel: &Kernel) -> DepthRange {
+        let mut range: Option<DepthRange> = None;
+        for (side, pyramid) in pyramids.iter().enumerate() {
+            let Some(footprint) = kernel.footprint(receiver, side) else { continue };
+            let here = match (pyramid, footprint) {
+                (None, _) => DepthRange::NOTHING,
+                (Some(pyramid), kernel::Footprint::Whole) => pyramid.whole(),
+                (Some(pyramid), kernel::Footprint::Part(tangents)) => {
+                    pyramid.range(&self.texels_between(tangents))
+                }
+            };
+            range = Some(range.map_or(here, |range| range.union(here)));
+        }
+        range.unwrap_or(DepthRange::NOTHING)
+    }
+
+    /// The texels between tangents to the right and upwards, and a hair more than the rounding of a tap.
+    #[inline(always)]
+    fn texels_between(&self, [right, up]: [[f32; 2]; 2]) -> TexelBox {
+        const HAIR: f32 = 1.0 / 64.0;
+        let (focal_length, corner) = (self.lens.focal_length, float(self.resolution) * 0.5);
+        let x = [right[0] * focal_length + corner - HAIR, right[1] * focal_length + corner + HAIR];
+        let y = [corner - up[1] * focal_length - HAIR, corner - up[0] * focal_length + HAIR];
+        TexelBox::between(x, y, self.resolution)
+    }
+}
+
+impl Lens {
+    /// What is nearer than this ratio says hides a receiver in the middle of a kernel: half a texel
+    /// before it, and 16 units in the last place for its own rounding.
+    #[inline(always)]
+    fn nearest_blocker(&self) -> f32 {
+        1.0 + 8.0 * f32::EPSILON + self.clearance
+    }
+}
+
+impl CubeFilter {
+    fn new(
+        pass: &ShadowPass,
+        sides: &[Option<DepthMap>; 6],
+        focal_length: f64,
+        work: &Work,
+    ) -> Result<Self, Cancelled> {
+        let pyramids = || -> Result<Pyramids, Cancelled> {
+            let mut pyramids = [const { None }; 6];
+            for (pyramid, side) in pyramids.iter_mut().zip(sides) {
+                *pyramid = side.as_ref().map(|map| Pyramid::over(map, work)).transpose()?;
+            }
+            Ok(pyramids)
+        };
+        let bias = round_to_f32(pass.bias);
+        Ok(match &pass.filter {
+            Filter::Hard => Self::Hard,
+            Filter::Pcf { radius } => {
+                let kernel = PcfKernel { tangent: round_to_f32(radius / focal_length), bias };
+                Self::Pcf { pyramids: pyramids()?, disc: Disc::new(PCF_TAPS), kernel }
+            }
+            Filter::Pcss(Pcss { light_radius, search_radius, search_taps, filter_taps }) => Self::Pcss {
+                pyramids: pyramids()?,
+                search: Disc::new(*search_taps),
+                filter: Disc::new(*filter_taps),
+                size: SoftKernel {
+                    light_radius: round_to_f32(*light_radius),
+                    search: search_radius.map(|radius| round_to_f32(radius / focal_length)),
+                    bias,
+                },
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

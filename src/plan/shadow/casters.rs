@@ -1,0 +1,137 @@
+//! Which instances throw a shadow on anything.
+
+use super::Rays;
+use crate::math::Bounds;
+use crate::model::Mesh;
+use crate::model::normals::face_normal;
+use crate::plan::{AlphaTest, Item, Slot, number, opacity};
+use crate::scene::{Cull, Instance, Scene, ShadowCull};
+use glam::DVec3;
+
+/// Every visible instance as a light sees it.
+pub(super) struct Participants(Vec<Participant>);
+
+struct Participant {
+    caster: Caster,
+    /// Whether it throws shadows.
+    casts: bool,
+    /// Whether shadows fall on it.
+    receives: bool,
+}
+
+/// What is drawn into a map.
+pub(super) struct Caster {
+    /// Its slots say which faces cast, and what of them; their draws count in `tests`.
+    pub(super) item: Item,
+    /// What decides on the slots that are cut out.
+    pub(super) tests: Vec<AlphaTest>,
+}
+
+impl Caster {
+    fn new(scene: &Scene, instance: &Instance, t: f64, cull: Cull) -> Self {
+        let mut tests = Vec::new();
+        let slots = instance.materials.iter().map(|&material| {
+            let transparency = opacity::of_solid(&scene.materials[material as usize])?;
+            let slot = Slot { draw: number(tests.len()), cull, opacity: transparency.opacity() };
+            tests.extend(transparency.into_test());
+            Some(slot)
+        });
+        let slots = slots.collect();
+        Self { item: Item::new(scene, instance, t, slots), tests }
+    }
+}
+
+impl Participants {
+    /// Places every visible instance as it is at time `t` (seconds).
+    pub(super) fn of(scene: &Scene, t: f64, cull: ShadowCull) -> Self {
+        let cull = match cull {
+            ShadowCull::None => Cull::None,
+            ShadowCull::Front => Cull::Front,
+            ShadowCull::Back => Cull::Back,
+        };
+        let participant = |instance: &Instance| {
+            let caster = Caster::new(scene, instance, t, cull);
+            let casts = instance.casts_shadow && caster.item.slots.iter().any(Option::is_some);
+            Participant { caster, casts, receives: instance.receives_shadow }
+        };
+        Self(scene.visible().map(|(_, instance)| participant(instance)).collect())
+    }
+
+    /// Those on which shadows fall.
+    pub(super) fn receivers(&self) -> Vec<&Item> {
+        self.0.iter().filter(|p| p.receives).map(|p| &p.caster.item).collect()
+    }
+
+    /// Those that throw a shadow on anything.
+    pub(super) fn casters(&self, rays: Rays) -> Vec<&Caster> {
+        let all = &self.0;
+        let boxes: Vec<Option<Bounds>> =
+            all.iter().map(|p| p.caster.item.bounds().filter(|_| p.receives)).collect();
+        let join = |a: Option<Bounds>, b: Option<Bounds>| match (a, b) {
+            (Some(a), Some(b)) => Some(a.union(b)),
+            (a, b) => a.or(b),
+        };
+        // Around all receivers behind each participant in the list; those before it are added on the way.
+        let mut after = vec![None; all.len() + 1];
+        for i in (0..all.len()).rev() {
+            after[i] = join(after[i + 1], boxes[i]);
+        }
+        let mut before = None;
+        let mut found = Vec::new();
+        for (i, p) in all.iter().enumerate() {
+            let others = join(before, after[i + 1]);
+            let shades = others.is_some_and(|others| can_shade(&p.caster.item, others, rays));
+            if p.casts && (shades || (p.receives && can_shade_itself(&p.caster.item.mesh))) {
+                found.push(&p.caster);
+            }
+            before = join(before, boxes[i]);
+        }
+        found
+    }
+}
+
+/// Whether anything in the box `others` can lie behind the item: no side of its own box that faces
+/// the light has all of them before it. So a floor shades nothing that stands on it.
+fn can_shade(item: &Item, others: Bounds, rays: Rays) -> bool {
+    let Some(own) = item.mesh.bounds else { return false };
+    let [low, high] = [own.min, own.max].map(|corner| item.linear * corner + item.origin);
+    let normals = item.world_from_normal();
+    (0..3).all(|axis| {
+        let normal = normals.col(axis);
+        let Some(towards) = side_that_faces_the_light(normal, [low, high], rays) else { return true };
+        let (corner, behind) = if towards { (high, -normal) } else { (low, normal) };
+        let reach = (others.max - others.min).length() * normal.length();
+        others.corners().iter().any(|p| (*p - corner).dot(behind) > reach * 1e-9)
+    })
+}
+
+/// Which of the two sides of a slab across `normal`, through the corners `low` and `high`, faces the
+/// light: the high one (`true`), the low one, or none: edge on a side hides nothing from parallel
+/// rays, and a point may lie between the two.
+fn side_that_faces_the_light(normal: DVec3, [low, high]: [DVec3; 2], rays: Rays) -> Option<bool> {
+    match rays {
+        Rays::Parallel(direction) => {
+            let along = normal.dot(direction);
+            (along != 0.0).then_some(along < 0.0)
+        }
+        Rays::FromPoint(position) if (position - high).dot(normal) > 0.0 => Some(true),
+        Rays::FromPoint(position) => ((position - low).dot(normal) < 0.0).then_some(false),
+    }
+}
+
+/// Whether a part of a mesh can shade another: not if it is convex.
+fn can_shade_itself(mesh: &Mesh) -> bool {
+    // Told for simple meshes alone: slabs, boxes, wedges. Others are taken to be hollow.
+    const SIMPLE: usize = 48;
+    mesh.triangles.len() > SIMPLE || !is_convex(mesh)
+}
+
+/// Whether all vertices lie on or behind the plane of every triangle.
+fn is_convex(mesh: &Mesh) -> bool {
+    let size = mesh.bounds.map_or(0.0, |bounds| (bounds.max - bounds.min).length());
+    mesh.triangles.iter().all(|corners| {
+        let [a, b, c] = corners.map(|v| mesh.position(v));
+        let normal = face_normal(&[a, b, c], [0, 1, 2]).unwrap_or(DVec3::ZERO);
+        mesh.triangles.as_flattened().iter().all(|&v| (mesh.position(v) - a).dot(normal) <= size * 1e-9)
+    })
+}

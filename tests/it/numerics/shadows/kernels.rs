@@ -1,0 +1,127 @@
+//! Filters with a kernel: PCF and PCSS.
+
+use super::{SLOPES, lit_plane, setting};
+use crate::box_on_floor::BoxOnFloor;
+use crate::draw::Picture;
+use crate::measure::none_of;
+use glam::DVec3;
+use serde_json::{Value, json};
+
+/// Pixels of a document that its shadows change.
+fn changed_by_shadows(document: &Value) -> (usize, usize) {
+    let mut without = document.clone();
+    without["render"]["shadows"] = json!(false);
+    let (with, without) = (Picture::of(document), Picture::of(&without));
+    let changed = with.pixels.iter().zip(&without.pixels).filter(|(a, b)| a != b).count();
+    (changed, with.pixels.len())
+}
+
+/// B33, k = 1, 2, 4, and the kernels of soft shadows.
+#[test]
+fn a_lit_plane_does_not_shadow_itself_under_any_kernel() {
+    let filters = [
+        ("PCF k = 1", json!({ "filter": "pcf", "radius": 1 })),
+        ("PCF k = 2", json!({ "filter": "pcf", "radius": 2 })),
+        ("PCF k = 4", json!({ "filter": "pcf", "radius": 4 })),
+        ("PCF k = 40", json!({ "filter": "pcf", "radius": 40 })),
+        ("PCSS 0.01", json!({ "filter": "pcss" })),
+        ("PCSS 0.3", json!({ "filter": "pcss", "light_radius": 0.3 })),
+        ("PCSS 0.01, search 9", json!({ "filter": "pcss", "search_radius": 9 })),
+    ];
+    for (name, filter) in filters {
+        for resolution in [64, 257, 1024] {
+            let (mut shadowed, mut pixels) = (0, 0);
+            for slope in SLOPES {
+                for azimuth in [0.0, 0.7, 4.0] {
+                    let mut document = lit_plane(slope, azimuth, resolution, &[]);
+                    let mut shadow = filter.clone();
+                    shadow["resolution"] = json!(resolution);
+                    document["lights"]["sun"]["shadow"] = shadow;
+                    let (changed, of) = changed_by_shadows(&document);
+                    (shadowed, pixels) = (shadowed + changed, pixels + of);
+                }
+            }
+            none_of(
+                &format!("B33 {name}, slopes 0–89.9°, map {resolution}"),
+                "shadowed pixels",
+                shadowed,
+                pixels,
+            );
+        }
+    }
+}
+
+/// The control of B33.
+#[test]
+fn without_an_offset_a_plane_shadows_itself_under_a_kernel() {
+    for (bias, expected) in [(0.0, true), (0.5, true), (1.0, false)] {
+        let mut document = lit_plane(60.0, 0.7, 64, &[]);
+        document["lights"]["sun"]["shadow"] = json!({ "filter": "pcf", "resolution": 64, "bias": bias });
+        assert_eq!(changed_by_shadows(&document).0 > 0, expected, "bias {bias}");
+    }
+}
+
+/// B39: a light without size throws a hard shadow, to the byte.
+#[test]
+fn a_kernel_without_size_is_the_hard_shadow() {
+    let of = |shadow: Value| {
+        let mut document = setting().document();
+        document["lights"]["sun"]["shadow"] = shadow;
+        document["lights"]["lamp"] = json!({ "type": "point", "position": [-1, 2, 1], "intensity": 3,
+            "shadow": document["lights"]["sun"]["shadow"] });
+        Picture::of(&document)
+    };
+    let hard = of(json!({ "filter": "hard", "resolution": 200 }));
+    assert!(of(json!({ "filter": "pcf", "resolution": 200 })) != hard);
+    assert!(of(json!({ "filter": "pcf", "resolution": 200, "radius": 0 })) == hard);
+    assert!(of(json!({ "filter": "pcss", "resolution": 200, "light_radius": 0.1 })) != hard);
+    assert!(of(json!({ "filter": "pcss", "resolution": 200, "light_radius": 0 })) == hard);
+    // And one next to nothing is no different.
+    assert!(of(json!({ "filter": "pcss", "resolution": 200, "light_radius": 1e-9 })) == hard);
+}
+
+/// B34: beyond the displacement that the bound allows, what is lit is wholly lit and what is dark wholly
+/// dark.
+#[test]
+fn filtered_shadows_begin_where_a_box_stands_and_walls_do_not_leak() {
+    for (name, min, max) in [
+        ("box", [-0.5, 0.0, -0.4], [0.4, 1.0, 0.5]),
+        ("thin wall", [-1.5, 0.0, -0.03], [1.0, 0.8, 0.03]),
+        ("slab that floats", [-0.6, 0.3, -0.5], [0.5, 0.34, 0.6]),
+    ] {
+        for (i, light) in [[-0.5, -1.0, -0.3], [0.7, -0.5, -0.6], [0.3, -1.0, 0.4]].into_iter().enumerate() {
+            for radius in [1.0, 2.0, 4.0] {
+                let setting = BoxOnFloor {
+                    min: min.into(),
+                    max: max.into(),
+                    light: DVec3::from(light),
+                    resolution: 1024,
+                    ..setting()
+                };
+                let mut document = setting.document();
+                let sun = &mut document["lights"]["sun"];
+                sun["intensity"] = json!(0.9);
+                sun["shadow"] = json!({ "filter": "pcf", "resolution": 1024, "radius": radius });
+                let mut without = document.clone();
+                without["render"]["shadows"] = json!(false);
+                // 2√2 (k + ½) texels across the light.
+                let texel = BoxOnFloor::texel(&document);
+                let apart = 2.0 * std::f64::consts::SQRT_2 * (radius + 0.5) * texel;
+                let (with, without) = (Picture::of(&document), Picture::of(&without));
+                let (mut acne, mut leaks, mut lit, mut dark) = (0, 0, 0, 0);
+                for (x, y, reached) in setting.beyond_doubt(apart) {
+                    if reached {
+                        lit += 1;
+                        acne += usize::from(with.at(x, y) != without.at(x, y));
+                    } else {
+                        dark += 1;
+                        leaks += usize::from(with.at(x, y)[0] != 0);
+                    }
+                }
+                let case = format!("B34 {name}, light {i}, PCF k = {radius}");
+                none_of(&case, "pixels in the light that are not wholly lit", acne, lit);
+                none_of(&case, "pixels in the shadow that are not wholly dark", leaks, dark);
+            }
+        }
+    }
+}
