@@ -35,8 +35,8 @@ struct Flag {
 impl Flag {
     /// A point of the cloth, `uv` in 0–1: bound to its pole at u = 0, waving the more the farther from it.
     fn point(&self, uv: DVec2) -> DVec3 {
-        let phase = 7.0 * uv.x + 1.5 * uv.y - 5.0 * self.seconds;
-        let sway = 0.16 * uv.x * libm::sin(phase);
+        let phase = 9.0 * uv.x + 1.5 * uv.y - 5.0 * self.seconds;
+        let sway = 0.22 * uv.x.sqrt() * libm::sin(phase);
         DVec3::new(1.6 * uv.x, uv.y - 0.12 * uv.x * uv.x, sway)
     }
 
@@ -66,7 +66,7 @@ impl Program for Flag {
     }
 
     fn pixels(&self, _level: Level, block: &Block, out: &mut Outputs) {
-        let light = Vec3::new(-0.5, 0.6, 0.62).normalize();
+        let light = Vec3::new(0.75, 0.35, 0.55).normalize();
         for i in 0..block.len() {
             let facing = if block.back >> i & 1 == 1 { -1.0 } else { 1.0 };
             let normal = Vec3::from_array([0, 1, 2].map(|axis| block.varyings[axis][i])).normalize() * facing;
@@ -104,9 +104,9 @@ fn cloth(u: f32, v: f32) -> Vec3 {
 
 /// Light in three tones, as a comic has it.
 fn tone(cosine: f32) -> f32 {
-    if cosine > 0.75 {
+    if cosine > 0.8 {
         1.0
-    } else if cosine > 0.35 {
+    } else if cosine > 0.4 {
         0.62
     } else {
         0.3

@@ -141,19 +141,22 @@ fn draw_from(eye: DVec3, targets: &mut Targets, state: &State, work: &Work) -> R
     textured.draw(targets, state, work)
 }
 
-/// What the depth target shows, as the reciprocal of the distance, and the id target, in one grey each.
+/// The depth target, as reciprocals of the distance, and the id target, in greys: the middle one of the
+/// pixels that each of the picture's has.
 fn greys(targets: &Targets) -> [Frame; 2] {
     let frame = |values: Vec<u16>| Frame {
-        width: targets.width(),
-        height: targets.height(),
+        width: WIDTH,
+        height: HEIGHT,
         pixels: Pixels::Gray16(values),
         stats: Stats::default(),
         timings: Timings::default(),
         depth_range: None,
     };
+    let middles = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| [x, y].map(|c| c * SCALE + SCALE / 2)));
+    let middles: Vec<usize> = middles.map(|[x, y]| (y * WIDTH * SCALE + x) as usize).collect();
     // The near plane is at 0.1: nothing here is nearer than 2, of depth 0.05.
-    let depth = targets.depth().iter().map(|depth| (depth * 20.0 * 65535.0) as u16);
-    let ids = targets.ids().iter().map(|&id| id as u16 * 20000);
+    let depth = middles.iter().map(|&at| (targets.depth()[at] * 20.0 * 65535.0) as u16);
+    let ids = middles.iter().map(|&at| targets.ids()[at] as u16 * 20000);
     [frame(depth.collect()), frame(ids.collect())]
 }
 

@@ -92,11 +92,17 @@ fn nearest_point(t: &Triangle, i: usize, p: [f64; 2]) -> [f64; 2] {
     [a[0] + dx * along, a[1] + dy * along]
 }
 
-/// Whether what a pixel sees lies before the triangle `t` at a point: by more than the rounding of two
-/// planes that share an edge there.
+/// Whether what a pixel sees lies before the triangle `t` at a point: by more than both planes rise over
+/// a sub-pixel. So far corners are moved when they are snapped, and an edge on a floor stays in sight.
 fn hides(own: Option<Entry>, t: &Triangle, at: [f64; 2], bins: &Bins) -> bool {
     own.is_some_and(|own| {
-        let before = triangle(own, bins).1.depth_at(at[0], at[1]);
-        before > t.depth_at(at[0], at[1]) * (1.0 + 1e-6)
+        let own = triangle(own, bins).1;
+        own.depth_at(at[0], at[1]) > t.depth_at(at[0], at[1]) + rise(own, at) + rise(t, at)
     })
+}
+
+/// How much the depth of a triangle's plane changes over a sub-pixel in x and one in y.
+fn rise(t: &Triangle, [x, y]: [f64; 2]) -> f64 {
+    let depth = t.depth_at(x, y);
+    (t.depth_at(x + 1.0, y) - depth).abs() + (t.depth_at(x, y + 1.0) - depth).abs()
 }

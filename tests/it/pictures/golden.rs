@@ -53,7 +53,7 @@ fn difference(actual: &Decoded, golden: &Decoded) -> Vec<u8> {
 
 /// Compares a frame with `tests/golden/<name>.png`.
 #[track_caller]
-fn assert_golden(name: &str, frame: &Frame) {
+pub fn assert_golden(name: &str, frame: &Frame) {
     let golden = root().join("tests/golden").join(name).with_extension("png");
     let actual = encode::png(frame);
     if std::env::var_os("RASTERD_BLESS").is_some_and(|value| value == "1") {
