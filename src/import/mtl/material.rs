@@ -7,6 +7,9 @@ use crate::limits::MAX_COORDINATE;
 use crate::model::Material;
 use glam::{DVec3, Vec3};
 
+/// The channel that `-imfchan m` names.
+const ALPHA: usize = 3;
+
 /// A material as far as its lines are read.
 pub(super) struct Draft {
     name: String,
@@ -93,7 +96,11 @@ impl Draft {
             notes.add(bump.line, "a bump map that is a normal map by its name is used as one");
             maps.normal.get_or_insert(bump);
         }
-        if let Some(map) = maps.opacity.take_if(|map| map.channel.is_none() && is_same(map, &maps.diffuse)) {
+        // The alpha of a diffuse map counts as it is. As `map_d` it would count twice.
+        let is_alpha = |map: &MapRef| map.channel.is_none_or(|channel| channel == ALPHA);
+        if let Some(map) = maps.opacity.take_if(|map| is_alpha(map) && is_same(map, &maps.diffuse))
+            && map.channel.is_none()
+        {
             notes.add(map.line, "`map_d` with the picture of `map_Kd` is left out: its alpha counts already");
         }
         if let Some(map) = self.ambient_map.as_ref().filter(|map| !is_same(map, &maps.diffuse)) {

@@ -93,7 +93,9 @@ fn maps_under_the_wrong_keyword_are_sorted_out() {
     let maps = material("norm a.png\nmap_Bump heights.png").maps;
     assert!(maps.bump.is_some() && maps.normal.is_some());
     assert_eq!(material("map_Kd a.png\nmap_d a.png").maps.opacity, None);
-    assert!(material("map_Kd a.png\nmap_d -imfchan m a.png").maps.opacity.is_some());
+    assert_eq!(material("map_Kd a.png\nmap_d -imfchan m a.png").maps.opacity, None);
+    assert!(material("map_Kd a.png\nmap_d -imfchan r a.png").maps.opacity.is_some());
+    assert!(material("map_Kd a.png\nmap_d -imfchan m b.png").maps.opacity.is_some());
 }
 
 #[test]
