@@ -3,7 +3,7 @@
 use super::samples;
 use super::tiles::cover::Region;
 use super::tiles::fragments::SampleOrder;
-use super::tiles::{Scratch, Tests, tile_shift};
+use super::tiles::{AlphaTests, Scratch, tile_shift};
 use super::work::{Cancelled, Work};
 use crate::plan::Plan;
 use glam::DVec3;
@@ -32,7 +32,7 @@ pub fn pick(plan: &Plan, x: u32, y: u32, work: &Work) -> Result<Option<Hit>, Can
     let place = [x >> shift, y >> shift];
     let mut scratch = Scratch::default();
     scratch.find_visible(work.level, &bins, place, plan.samples);
-    let tests = Tests { draws: &plan.draws, items: &plan.items, view: &plan.view };
+    let tests = AlphaTests { draws: &plan.draws, items: &plan.items, view: &plan.view };
     let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
     scratch.find_cut_outs(work.level, &bins, place, &order, &tests);
     let within = [x, y].map(|c| (c & ((1 << shift) - 1)) as usize);

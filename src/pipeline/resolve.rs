@@ -30,10 +30,11 @@ pub fn resolve(
 /// One channel of every sample of a shared pixel: that of its fragment in `channel`, or `uncovered`.
 pub fn values(fragments: &Fragments, shared: &SharedPixel, channel: &[f32], uncovered: f32) -> [f32; 16] {
     let mut values = [uncovered; 16];
-    for at in shared.first as usize..(shared.first + shared.count) as usize {
+    let range = shared.first as usize..(shared.first + shared.count) as usize;
+    for (mask, color) in fragments.masks[range.clone()].iter().zip(&channel[range]) {
         for (s, value) in values.iter_mut().enumerate() {
-            if fragments.masks[at] >> s & 1 == 1 {
-                *value = channel[at];
+            if mask >> s & 1 == 1 {
+                *value = *color;
             }
         }
     }

@@ -10,7 +10,7 @@ use super::geometry::setup::Triangle;
 use super::samples;
 use super::tiles::cover::Region;
 use super::tiles::fragments::SampleOrder;
-use super::tiles::{self, Scratch, Tests};
+use super::tiles::{self, AlphaTests, Scratch};
 use super::work::{Cancelled, Work};
 use crate::math::View;
 use crate::plan::{Draw, Plan};
@@ -62,7 +62,7 @@ pub fn draw_wireframe(
 
 /// Finds what the centre of each pixel of a tile sees.
 fn find_seen(plan: &Plan, bins: &Bins, place: [u32; 2], work: &Work, scratch: &mut Scratch) {
-    let tests = Tests { draws: &plan.draws, items: &plan.items, view: &plan.view };
+    let tests = AlphaTests { draws: &plan.draws, items: &plan.items, view: &plan.view };
     let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
     scratch.find_visible(work.level, bins, place, 1);
     scratch.find_cut_outs(work.level, bins, place, &order, &tests);

@@ -261,7 +261,9 @@ struct LayerTarget<'a> {
     opaque: &'a Visibility,
     tie: AtEqualDepth,
     window: Window,
+    /// Pixels in a row of the tile's buffers, a power of two, and log2 of its square.
     side: usize,
+    plane_shift: u32,
     /// Added to the places that the window's region counts.
     corner: usize,
     id: u32,
@@ -291,6 +293,7 @@ impl<'a> LayerTarget<'a> {
             tie,
             window,
             side: tile.side,
+            plane_shift: 2 * tile.side.trailing_zeros(),
             corner,
             id: 0,
             row: 0,
@@ -305,14 +308,14 @@ impl<'a> LayerTarget<'a> {
     /// Lists the row that is under way.
     #[inline(always)]
     fn flush(&mut self) {
-        let mut lanes = self.any & self.window.columns(self.row % self.side);
+        let mut lanes = self.any & self.window.columns(self.row & (self.side - 1));
         while lanes != 0 {
             self.push(lanes.trailing_zeros() as usize);
             lanes &= lanes - 1;
         }
         self.any = 0;
-        self.covered[..self.samples].fill(0);
-        self.seen[..self.samples].fill(0);
+        self.covered = [0; 16];
+        self.seen = [0; 16];
     }
 
     #[inline(always)]
@@ -346,8 +349,8 @@ impl<S: Simd> Target<S> for LayerTarget<'_> {
             AtEqualDepth::Later => something & old_id.simd_lt(u32x8::splat(simd, self.id)),
         };
         let seen = mask & (depth.simd_gt(old_depth) | (depth.simd_eq(old_depth) & wins));
-        let plane = self.side * self.side;
-        let (sample, row) = (at / plane, at % plane);
+        let sample = at >> self.plane_shift;
+        let row = at & ((1 << self.plane_shift) - 1);
         if row != self.row {
             self.flush();
             self.row = row;

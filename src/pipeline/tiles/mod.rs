@@ -132,13 +132,13 @@ impl<'a> Shared<'a> {
     }
 
     /// What decides on triangles with holes.
-    fn tests(&self) -> Tests<'a> {
-        Tests { draws: self.draws, items: self.items, view: self.lighting.view }
+    fn tests(&self) -> AlphaTests<'a> {
+        AlphaTests { draws: self.draws, items: self.items, view: self.lighting.view }
     }
 }
 
 /// What decides on triangles with holes.
-pub struct Tests<'a> {
+pub struct AlphaTests<'a> {
     /// The draws of the plan.
     pub draws: &'a [Draw],
     /// The items of the plan.
@@ -147,7 +147,7 @@ pub struct Tests<'a> {
     pub view: &'a View,
 }
 
-impl<'a> Tests<'a> {
+impl<'a> AlphaTests<'a> {
     fn of(&self, draw: u32) -> ItemTest<'a> {
         let draw = &self.draws[draw as usize];
         let test = draw.alpha_test.as_ref().expect("the plan gives every cut-out its test");
@@ -189,7 +189,7 @@ impl Scratch {
         bins: &Bins,
         place: [u32; 2],
         order: &SampleOrder,
-        tests: &Tests,
+        tests: &AlphaTests,
     ) {
         if self.cut_outs.is_empty() {
             return;

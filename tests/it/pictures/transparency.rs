@@ -253,7 +253,8 @@ fn alpha_of_a_transparent_picture_is_what_layers_leave_open() {
     for (x, y, there) in [(32, 32, &[0, 1, 2][..]), (50, 20, &[0][..]), (1, 1, &[][..])] {
         let opacities: Vec<f64> = there.iter().map(|&i| SHEETS[i].opacity).collect();
         let [r, g, b, a] = picture.at(x, y);
-        assert_eq!(a, (255.0 * alpha(&opacities) + 0.5).floor() as u8, "({x}, {y})");
+        let apart = (f64::from(a) - 255.0 * alpha(&opacities)).abs();
+        at_most(&format!("alpha at ({x}, {y})"), "codes", apart, HALF_A_CODE);
         if there == [0] {
             at_most("straight colour", "codes", codes_apart([r, g, b, a], SHEETS[0].color.into()), 0.51);
         }
@@ -290,8 +291,7 @@ fn b15_layers_of_one_depth_are_composited_in_the_order_of_submission() {
 fn b15_coplanar_sheets_look_the_same_in_every_run() {
     let mut document = sheets(&named(&SHEETS[..2]), 4);
     document["camera"] = json!({ "position": [0.7, 0.9, 2.5], "target": [0, 0, 0] });
-    let positions =
-        [[-0.5, 0.0, -0.5], [0.5, 0.0, -0.5], [0.5, 0.0, 0.5], [-0.5, 0.0, 0.5]].map(|p: [f64; 3]| p);
+    let positions = [[-0.5, 0.0, -0.5], [0.5, 0.0, -0.5], [0.5, 0.0, 0.5], [-0.5, 0.0, 0.5]];
     document["meshes"]["cut"] =
         json!({ "type": "triangles", "positions": positions, "indices": [0, 2, 1, 0, 3, 2] });
     for (name, mesh) in [("rose", "sheet"), ("leaf", "cut")] {
@@ -351,7 +351,8 @@ fn alpha_holds_in_every_kind_of_shading() {
         let mut document = sheets(&named(&SHEETS[..1]), 1);
         document["environment"]["background"]["color"] = json!([0, 0, 0]);
         document["environment"]["ambient"] = json!([0.2, 0.2, 0.2]);
-        document["lights"] = json!({ "sun": { "type": "directional", "direction": [0.3, -0.4, -1] } });
+        document["lights"] =
+            json!({ "sun": { "type": "directional", "direction": [0.3, -0.4, -1], "intensity": 0.5 } });
         let rose = &mut document["materials"]["rose"];
         rose["shading"] = json!(shading);
         rose["specular"] = json!([0.3, 0.3, 0.3]);
@@ -469,7 +470,7 @@ fn holes_are_cut_where_the_map_says_and_light_falls_through_them() {
 
 #[test]
 fn edges_of_holes_are_exact() {
-    // Seen from above, a pixel is a fortieth of a field: the outline is that of the closed form.
+    // Seen from above, a field is twenty pixels wide: its outline is that of the closed form.
     let holes = Holes {
         camera: Camera::orthographic([0.0, 3.0, 0.0], [0.0, 0.0, 0.0], 1.7, 170, 170),
         ..Holes::new()
@@ -480,12 +481,10 @@ fn edges_of_holes_are_exact() {
         let (mut wrong, mut checked) = (0, 0);
         for (x, y, pixel) in Picture::of(&document).iter() {
             let Some(met) = holes.camera.steady(x, y, 2.0 / 256.0, Holes::meets) else { continue };
-            // Around the sheet's own outline samples differ.
-            if holes
-                .camera
-                .steady(x, y, 0.8, |ray| ray.origin.x.abs() < 0.8 && ray.origin.z.abs() < 0.8)
-                .is_none()
-            {
+            // Samples of a pixel differ where the sheet ends, and where its two triangles meet.
+            let on_sheet = |ray: Ray| ray.origin.x.abs() < 0.8 && ray.origin.z.abs() < 0.8;
+            let on_diagonal = x.abs_diff(y) < 2 || (x + y).abs_diff(169) < 2;
+            if on_diagonal || holes.camera.steady(x, y, 0.8, on_sheet).is_none() {
                 continue;
             }
             checked += 1;
@@ -519,12 +518,12 @@ fn data_outputs_and_pick_see_through_holes() {
         worst = worst.max((f64::from(depths[at]) - 65535.0 * (s - 0.1) / 9.9).abs());
         if x % 16 == 3 && y % 16 == 5 {
             let hit = pick(&scene, x, y).expect("a surface");
-            wrong += usize::from(hit.instance != u32::from(seen) || (hit.depth - s).abs() > 1e-2);
+            wrong += usize::from(hit.instance != u32::from(seen) || (hit.depth - s).abs() > 1e-3);
         }
         checked += 1;
     }
     none_of("data outputs of holes", "wrong pixels", wrong, checked);
-    at_most("data outputs of holes", "depth in codes", worst, 40.0);
+    at_most("data outputs of holes", "depth in codes", worst, 4.0);
 }
 
 #[test]
@@ -532,7 +531,9 @@ fn half_opaque_counts_as_there_and_less_does_not() {
     for (opacity, there) in [(0.499, false), (0.5, true)] {
         let mut sheet = SHEETS;
         sheet[0].opacity = opacity;
-        let scene = scene(&sheets(&named(&sheet[..1]), 1));
+        let mut document = sheets(&named(&sheet[..1]), 1);
+        document["camera"]["far"] = json!(10);
+        let scene = scene(&document);
         assert_eq!(values(frame(&scene, &output(Output::Instance)))[30 * 64 + 36] != 0, there);
         assert_eq!(values(frame(&scene, &output(Output::Depth)))[30 * 64 + 36] != u16::MAX, there);
         for output in [Output::Normal, Output::Albedo].map(output) {
@@ -548,6 +549,7 @@ fn a_sheet_casts_from_half_opacity_on() {
     let picture = |change: &dyn Fn(&mut Value)| {
         let mut document = Holes::new().document();
         document["materials"]["sheet"] = json!({ "shading": "unlit", "diffuse": [1, 0, 0] });
+        document["lights"]["sun"]["intensity"] = json!(1);
         change(&mut document);
         Picture::of(&document)
     };
@@ -556,7 +558,7 @@ fn a_sheet_casts_from_half_opacity_on() {
         with(0.4)(d);
         d["instances"]["sheet"]["casts_shadow"] = json!(false);
     });
-    assert_eq!(picture(&with(0.4)), silent);
+    assert!(picture(&with(0.4)) == silent, "less than half opaque");
     let full = picture(&with(1.0));
     let half = picture(&with(0.5));
     let holes = Holes::new();
@@ -572,7 +574,7 @@ fn a_sheet_casts_from_half_opacity_on() {
         dark += usize::from(pixel == [0, 0, 0, 255]);
         checked += 1;
     }
-    assert!(dark > 500, "{dark} pixels in the shadow");
+    assert!(dark > 150, "{dark} pixels in the shadow");
     none_of("a sheet of half opacity", "pixels lit otherwise", wrong, checked);
     // With a cut-off it casts from there on.
     let cut = |opacity: f64| {
@@ -581,9 +583,11 @@ fn a_sheet_casts_from_half_opacity_on() {
             d["materials"]["sheet"]["alpha_cutoff"] = json!(0.3);
         })
     };
-    assert_eq!(cut(0.3), full);
-    assert_ne!(cut(0.29), silent, "neither seen nor casting");
-    assert_eq!(cut(0.29).at(80, 50), [255; 4]);
+    let without = picture(&|d| {
+        d["instances"].as_object_mut().expect("a map").remove("sheet");
+    });
+    assert!(cut(0.3) == full, "as much as the cut-off");
+    assert!(cut(0.29) == without, "less than the cut-off");
 }
 
 #[test]

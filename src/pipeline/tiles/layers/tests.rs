@@ -71,8 +71,10 @@ fn gather(pile: Vec<Triangle>, opaque: usize, samples: u32, window: Option<Windo
     Gathered { bins, seen, layers }
 }
 
-/// What each layer says: its triangle, pixel, and the depths of its samples.
-fn told(gathered: &Gathered) -> Vec<(u32, u16, Vec<(usize, u32)>)> {
+/// What a layer says: its triangle, its pixel, and bits of the depths of its samples.
+type Told = (u32, u16, Vec<(usize, u32)>);
+
+fn told(gathered: &Gathered) -> Vec<Told> {
     let layers = &gathered.layers;
     let samples = |layer: &Layer| layer.samples(layers).map(|(s, depth)| (s, depth.to_bits())).collect();
     layers.list.iter().map(|layer| (layer.id, layer.pixel, samples(layer))).collect()
