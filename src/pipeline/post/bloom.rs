@@ -21,7 +21,7 @@ pub fn bloom(
 ) -> Result<(), Cancelled> {
     let (width, height) = (frame.width, frame.height);
     let LinearFrame { planes, spare, .. } = frame;
-    let [share, across] = spare.as_mut_slice() else { unreachable!("invariant: bloom has two planes") };
+    let [share, across] = spare.get_disjoint_mut([0, 1]).expect("invariant: bloom has two spare planes");
     over_rows(&Share { planes, threshold }, share, work)?;
     for plane in planes.iter_mut().take(3) {
         over_rows(&Across { from: plane, share, width, gaussian }, across, work)?;

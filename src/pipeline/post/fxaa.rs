@@ -22,7 +22,7 @@ use edge::{EDGE_MIN, EDGE_SHARE, Luma, Mix};
 pub fn fxaa(frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
     let (width, height) = (frame.width, frame.height);
     let LinearFrame { planes, spare, .. } = frame;
-    let [luma, mixes] = spare.as_mut_slice() else { unreachable!("invariant: FXAA has two planes") };
+    let [luma, mixes] = spare.get_disjoint_mut([0, 1]).expect("invariant: FXAA has two spare planes");
     over_rows(&Brightness { planes }, luma, work)?;
     over_rows(&FindEdges { luma, width, height }, mixes, work)?;
     // From here on `luma` takes the channels' results, one after the other.
@@ -77,10 +77,8 @@ impl RowPass for FindEdges<'_> {
                 let most = max(max(max(north[i], south[i]), max(west[i], east[i])), centre[i]);
                 let least = min(min(min(north[i], south[i]), min(west[i], east[i])), centre[i]);
                 let needed = max(most * EDGE_SHARE, f32x8::splat(simd, EDGE_MIN));
-                let mut jumps = (most - least).simd_ge(needed).to_bitmask();
-                while jumps != 0 {
-                    let at = i * LANES + jumps.trailing_zeros() as usize;
-                    jumps &= jumps - 1;
+                for lane in bits((most - least).simd_ge(needed).to_bitmask()) {
+                    let at = i * LANES + lane;
                     if x + at < self.width {
                         out[at] = edge::mix(&luma, x + at, y).code();
                     }
@@ -101,19 +99,36 @@ struct Blend<'a> {
 
 impl RowPass for Blend<'_> {
     #[inline(always)]
-    fn row<S: Simd>(&self, _: S, y: usize, out: &mut [f32], _: &mut Scratch) {
+    fn row<S: Simd>(&self, simd: S, y: usize, out: &mut [f32], _: &mut Scratch) {
         out.copy_from_slice(self.from.row(y));
-        let mixes = self.mixes.row(y);
-        for (x, &code) in mixes.iter().enumerate().filter(|(_, code)| **code > 0.0) {
-            let mix = Mix::from_code(code);
-            let [nx, ny] = mix.neighbour(x, y, self.width, self.height);
-            let blend = |plane: &Plane| mix.blend(plane.row(y)[x], plane.row(ny)[nx]);
-            out[x] = match self.alpha {
-                None => blend(self.from),
-                // Both with their alpha, and the sum made to fit the pixel's own.
-                Some(alpha) if blend(alpha) > 0.0 => blend(self.from) / blend(alpha) * alpha.row(y)[x],
-                Some(_) => 0.0,
-            };
+        for (x, codes) in (0..).step_by(LANES).zip(self.mixes.row(y).chunks_exact(LANES)) {
+            let none = f32x8::splat(simd, 0.0);
+            for lane in bits(f32x8::from_slice(simd, codes).simd_gt(none).to_bitmask()) {
+                out[x + lane] = self.blended(Mix::from_code(codes[lane]), x + lane, y);
+            }
         }
     }
+}
+
+impl Blend<'_> {
+    /// The pixel (x, y) with its share of a neighbour.
+    fn blended(&self, mix: Mix, x: usize, y: usize) -> f32 {
+        let [nx, ny] = mix.neighbour(x, y, self.width, self.height);
+        let blend = |plane: &Plane| mix.blend(plane.row(y)[x], plane.row(ny)[nx]);
+        match self.alpha {
+            None => blend(self.from),
+            // Both with their alpha, and the sum made to fit the pixel's own.
+            Some(alpha) if blend(alpha) > 0.0 => blend(self.from) / blend(alpha) * alpha.row(y)[x],
+            Some(_) => 0.0,
+        }
+    }
+}
+
+/// Places of the bits that are set, from the lowest.
+fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = (mask != 0).then(|| mask.trailing_zeros() as usize)?;
+        mask &= mask - 1;
+        Some(lowest)
+    })
 }

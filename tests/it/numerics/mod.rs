@@ -17,7 +17,7 @@ mod colour;
 mod coverage;
 mod crops;
 mod depth;
-mod determinism;
+pub mod determinism;
 mod document;
 mod enormous;
 mod interpolated;
