@@ -103,7 +103,6 @@ fn side(text: &str) -> Result<u32, String> {
 fn output(text: &str) -> Result<Output, String> {
     match OUTPUTS.iter().find(|(word, _)| *word == text) {
         Some((_, output)) => Ok(*output),
-        None if text == "wireframe" => Err(format!("wireframe {NOT_AVAILABLE}")),
         None => Err(not_one_of(text, OUTPUTS.iter().map(|(word, _)| *word))),
     }
 }
@@ -237,7 +236,7 @@ mod tests {
 
     #[test]
     fn what_this_version_lacks_says_so() {
-        for pair in [("output", "wireframe"), ("preset", "draft"), ("max_ms", "5"), ("max_error", "1")] {
+        for pair in [("preset", "draft"), ("max_ms", "5"), ("max_error", "1")] {
             let faults = faults(&[pair]);
             assert!(faults.len() == 1 && faults[0].ends_with(NOT_AVAILABLE), "{faults:?}");
         }
