@@ -67,6 +67,10 @@ struct SoftKernel {
 
 type Pyramids = [Option<Pyramid>; 6];
 
+/// The largest normal offset, as a part of the distance to the light: maps of a few texels would have
+/// receivers pass it.
+const LARGEST_OFFSET: f64 = 0.25;
+
 /// How often the search for blockers is narrowed to what the nearest caster below it demands.
 const NARROWINGS: usize = 3;
 
@@ -82,6 +86,7 @@ impl CubeMap {
         // A receiver that moves along its normal may move away from the axis of its side: its texel
         // grows by as much as the offset is of the distance.
         let reach = HALF_TEXEL * pass.bias / focal_length * (1.0 + 1.5 / focal_length);
+        let reach = reach.min(LARGEST_OFFSET);
         let lens = Lens {
             focal_length: round_to_f32(focal_length),
             near: round_to_f32(view.near),

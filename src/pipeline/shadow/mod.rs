@@ -5,9 +5,23 @@
 //! Receivers ─ pyramid: all lit? all dark? ─ else taps ─ part of the light that arrives
 //! ```
 //!
-//! A filter is a disc of taps around the receiver; each compares a texel with the receiver's plane at
-//! that very place, so a plane does not shadow itself however wide the kernel. The result is a count of
-//! lit taps over their number: a kernel wholly lit is exactly 1, one wholly dark exactly 0.
+//! A filter is a disc of taps around the receiver. The result is a count of lit taps over their number: a
+//! kernel wholly lit is exactly 1, one wholly dark exactly 0.
+//!
+//! # Why a surface does not shadow itself
+//!
+//! A texel holds the depth at its centre, which lies up to half a texel from a tap along x and along y. On
+//! a plane whose depth changes by `z_x` and `z_y` per texel it may be nearer to the light than the tap by
+//! `(|z_x| + |z_y|) / 2`. A receiver moved along its unit normal n by `(|n_x| + |n_y|) / 2` texels clears
+//! just that at every slope, and moves by less than a texel where the offset in depth would grow as the
+//! tangent (numerics: B33; `bias` is a factor on it).
+//!
+//! A tap at k texels from the receiver that compared with the receiver's own depth would need k texels
+//! more. It compares with the receiver's plane at its own place, so half a texel is enough for every
+//! kernel. Where the plane there lies deeper than the receiver, it compares with the receiver's own depth,
+//! since what lies deeper than a point cannot shade it: a floor far below does not darken the rim of a
+//! ball. Surfaces that are no planes rise above them in hollows: a tap lets pass what rises by less than
+//! 45° on the way to it, and by half a texel.
 
 mod cube;
 mod depth_map;
