@@ -120,6 +120,28 @@ fn still_life() -> Value {
     })
 }
 
+/// A pole, a ball above the floor and a box, all around the middle of a plain floor.
+fn shadow_study(light: Value) -> Value {
+    json!({
+        "camera": { "position": [0.6, 3.6, 3.0], "target": [0.35, 0.15, 0.1], "fov_y_deg": 42 },
+        "environment": { "ambient": [0.15, 0.16, 0.18] },
+        "lights": { "light": light },
+        "materials": { "red": { "diffuse": "#c0392b" }, "teal": { "diffuse": "#16a085" } },
+        "meshes": {
+            "floor": { "type": "plane", "size": [9, 9] }, "ball": { "type": "sphere", "radius": 0.35 },
+            "pole": { "type": "cylinder", "radius": 0.06, "height": 1.4 },
+            "box": { "type": "box", "size": [0.6, 0.7, 0.6] },
+        },
+        "instances": {
+            "ball": { "mesh": "ball", "material": "red", "translation": [0.4, 0.6, -0.6] },
+            "box": { "mesh": "box", "material": "teal", "translation": [0.4, 0.35, 0.7], "rotation_deg": [0, 25, 0] },
+            "floor": { "mesh": "floor" },
+            "pole": { "mesh": "pole", "material": "teal", "translation": [-1.0, 0.7, 0.0] },
+        },
+        "render": { "width": 160, "height": 120, "samples": 4 },
+    })
+}
+
 #[test]
 fn golden_coverage() {
     check("cover/one_sample_has_hard_edges", &triangle(1));
@@ -200,6 +222,34 @@ fn golden_shadows() {
     grazing["lights"]["sun"]["direction"] = json!([-1, -0.15, -0.4]);
     grazing["lights"]["sun"]["intensity"] = json!(4);
     check("shadow/grazing_light_leaves_no_acne", &grazing);
+    let sun = |shadow: Value| {
+        shadow_study(
+            json!({ "type": "directional", "direction": [0.9, -1, 0.35], "intensity": 0.9, "shadow": shadow }),
+        )
+    };
+    let pcf = json!({ "filter": "pcf", "resolution": 128, "radius": 2 });
+    check("shadow/pcf_softens_every_edge_alike", &sun(pcf));
+    let pcss = json!({ "filter": "pcss", "resolution": 512, "light_radius": 0.15 });
+    check("shadow/pcss_is_sharp_where_it_begins", &sun(pcss));
+    for cull in ["front", "back"] {
+        let mut document = sun(json!({ "filter": "hard", "resolution": 512, "cull": cull }));
+        document["meshes"]["box"] = json!({ "type": "plane", "size": [0.7, 0.7] });
+        check(&format!("shadow/sheets_that_cull_{cull}_faces"), &document);
+    }
+}
+
+#[test]
+fn golden_point_shadows() {
+    let lamp = |shadow: Value| {
+        shadow_study(
+            json!({ "type": "point", "position": [-0.2, 1.6, 0.1], "intensity": 2.5, "shadow": shadow }),
+        )
+    };
+    check("shadow/a_lamp_throws_hard_shadows", &lamp(json!({ "filter": "hard", "resolution": 512 })));
+    let pcf = json!({ "filter": "pcf", "resolution": 128, "radius": 1.5 });
+    check("shadow/a_lamp_throws_pcf_shadows", &lamp(pcf));
+    let ball = json!({ "filter": "pcss", "resolution": 512, "light_radius": 0.12 });
+    check("shadow/a_glowing_ball_throws_soft_shadows", &lamp(ball));
 }
 
 #[test]

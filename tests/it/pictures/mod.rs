@@ -13,5 +13,6 @@ mod relief;
 mod sampler;
 mod shadows;
 mod sky;
+mod soft_shadows;
 mod textures;
 mod transparency;

@@ -49,18 +49,23 @@ fn without_shadows_everything_that_faces_the_light_is_lit() {
         });
         dark.count() == 0
     };
-    let document = setting.document();
-    assert!(!floor_is_lit(&document));
-    for (pointer, value) in [
-        ("/render/shadows", json!(false)),
-        ("/lights/sun/shadow/filter", json!("none")),
-        ("/instances/box/casts_shadow", json!(false)),
-        ("/instances/floor/receives_shadow", json!(false)),
-    ] {
-        let mut changed = document.clone();
-        let (parent, key) = pointer.rsplit_once('/').expect("a path");
-        changed.pointer_mut(parent).expect("a parent")[key] = value;
-        assert!(floor_is_lit(&changed), "{pointer}");
+    let sun = setting.document();
+    let mut lamp = sun.clone();
+    lamp["lights"]["sun"] = json!({ "type": "point", "position": [1, 2, 0.6], "intensity": 4000,
+        "shadow": { "filter": "pcf", "resolution": 512 } });
+    for document in [sun, lamp] {
+        assert!(!floor_is_lit(&document));
+        for (pointer, value) in [
+            ("/render/shadows", json!(false)),
+            ("/lights/sun/shadow/filter", json!("none")),
+            ("/instances/box/casts_shadow", json!(false)),
+            ("/instances/floor/receives_shadow", json!(false)),
+        ] {
+            let mut changed = document.clone();
+            let (parent, key) = pointer.rsplit_once('/').expect("a path");
+            changed.pointer_mut(parent).expect("a parent")[key] = value;
+            assert!(floor_is_lit(&changed), "{pointer}");
+        }
     }
 }
 
