@@ -1,6 +1,6 @@
 //! The scene that is there at start: a still life that needs no file from anywhere.
 
-mod noise;
+pub mod noise;
 mod textures;
 
 use super::Files;
