@@ -275,6 +275,7 @@ async function openScene(id) {
     byId("show-demo").hidden = id === "demo";
     history.replaceState(null, "", id === "demo" ? location.pathname : `#${encodeURIComponent(id)}`);
     showWarnings(summary?.warnings ?? []);
+    markOpenPiece();
     clearProblem();
     setOrbit(null);
   } catch (error) {
@@ -304,9 +305,64 @@ async function upload(files) {
   }
 }
 
+// ── Gallery ──
+
+/** What the server offers to open, each with a picture. */
+async function listGallery() {
+  try {
+    const pieces = await getJson("/gallery");
+    byId("gallery").querySelector("ul").replaceChildren(...pieces.map((piece) => element("li", galleryButton(piece))));
+    byId("gallery").hidden = pieces.length === 0;
+    markOpenPiece();
+  } catch {
+    // The page does without.
+  }
+}
+
+function galleryButton({ name, title, description, picture }) {
+  const image = element("img");
+  // Lazy before there is a source: a closed list loads no pictures.
+  Object.assign(image, { loading: "lazy", alt: "", width: 480, height: 360, src: picture });
+  const button = element("button", image, element("span", title));
+  Object.assign(button, { type: "button", title: description });
+  button.dataset.scene = `gallery-${name}`;
+  button.addEventListener("click", () => openPiece(name));
+  return button;
+}
+
+/** Every piece is one scene: who opens it first creates it, and changes to it stay. */
+async function openPiece(name) {
+  const id = `gallery-${name}`;
+  setStatus("Opening…", 300);
+  try {
+    const query = new URLSearchParams({ from: name });
+    const response = await fetch(`/scenes/${id}?${query}`, { method: "PUT", headers: { "If-None-Match": "*" } });
+    if (!response.ok && response.status !== 412) throw await problemOf(response);
+    await openScene(id);
+  } catch (error) {
+    showProblem(error, "The scene could not be opened");
+  } finally {
+    setStatus("");
+  }
+}
+
+function markOpenPiece() {
+  for (const button of byId("gallery").querySelectorAll("button")) {
+    if (button.dataset.scene === state.scene) button.setAttribute("aria-current", "true");
+    else button.removeAttribute("aria-current");
+  }
+}
+
 byId("files").addEventListener("change", (event) => upload([...event.target.files]));
 byId("show-demo").addEventListener("click", () => openScene("demo"));
-window.addEventListener("hashchange", () => openScene(sceneOfAddress()));
+window.addEventListener("hashchange", openAddressed);
+
+/** The scene that the address names; one of the gallery need not be there yet. */
+function openAddressed() {
+  const id = sceneOfAddress();
+  if (id.startsWith("gallery-")) openPiece(id.slice("gallery-".length));
+  else openScene(id);
+}
 
 function sceneOfAddress() {
   try {
@@ -410,4 +466,5 @@ function element(name, ...children) {
   return made;
 }
 
-openScene(sceneOfAddress());
+listGallery();
+openAddressed();

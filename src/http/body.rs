@@ -2,7 +2,9 @@
 
 use super::blocking;
 use super::problem::Problem;
+use super::query::Source;
 use crate::limits::Limits;
+use crate::plan::QueryFault;
 use crate::scene::Files;
 use crate::scene::{ModelOptions, NewScene};
 use axum::body::Body;
@@ -66,12 +68,25 @@ pub(super) async fn patch(request: Request, bounds: Bounds) -> Result<Value, Pro
     blocking::run(move || json(&bytes)).await
 }
 
-/// A new scene: a document, a multipart form of one with its files, or a bare OBJ.
-pub(super) async fn scene(
-    request: Request,
-    bounds: Bounds,
-    options: ModelOptions,
-) -> Result<NewScene, Problem> {
+/// A new scene, of the body or in place of one.
+pub(super) async fn scene(request: Request, bounds: Bounds, source: Source) -> Result<NewScene, Problem> {
+    match source {
+        Source::Body(options) => sent(request, bounds, options).await,
+        Source::Gallery(piece) => {
+            let body = bytes(request, bounds).await?;
+            if body.is_empty() { Ok(piece.to_scene()) } else { Err(from_beside_a_body(body.len())) }
+        }
+    }
+}
+
+fn from_beside_a_body(bytes: usize) -> Problem {
+    let detail =
+        format!("must come without a body, which has {bytes} bytes: a scene is made of one or the other");
+    Problem::query(&[QueryFault::new("from", detail)])
+}
+
+/// A document, a multipart form of one with its files, or a bare OBJ.
+async fn sent(request: Request, bounds: Bounds, options: ModelOptions) -> Result<NewScene, Problem> {
     let media_type = media_type(request.headers());
     match media_type.as_deref() {
         Some("multipart/form-data") => {

@@ -11,6 +11,7 @@ mod connection;
 mod etag;
 mod files;
 mod frames;
+mod gallery;
 mod guard;
 mod observe;
 mod openapi;
@@ -95,6 +96,8 @@ pub fn router(app: App) -> Router {
         .routes(routes!(frames::get_png, frames::post_png))
         .routes(routes!(pick::read))
         .routes(routes!(render_once::post_png))
+        .routes(routes!(gallery::list))
+        .routes(routes!(gallery::picture))
         .routes(routes!(page::index))
         .routes(routes!(service::healthz))
         .routes(routes!(service::readyz))

@@ -55,11 +55,13 @@ pub(super) struct FrameQuery {
     elide: Option<String>,
 }
 
-/// How a model becomes a scene.
+/// What a new scene is made of.
 #[derive(IntoParams)]
 #[into_params(parameter_in = Query)]
-#[expect(dead_code, reason = "names and types for the description; `model_options` does the reading")]
-pub(super) struct ModelQuery {
+#[expect(dead_code, reason = "names and types for the description; `query::source` does the reading")]
+pub(super) struct SourceQuery {
+    /// A name of the gallery, in place of a body
+    from: Option<String>,
     /// Which of the model's axes is up: `y` or `z`
     up: Option<String>,
     /// Whether to put a floor under it
@@ -105,6 +107,18 @@ pub(super) struct Summary {
 pub(super) struct FileEntry {
     name: String,
     bytes: u64,
+}
+
+/// A scene to open.
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "names and types for the description; the gallery writes it")]
+pub(super) struct GalleryPiece {
+    /// What `from` takes
+    name: String,
+    title: String,
+    description: String,
+    /// Path of a small picture
+    picture: String,
 }
 
 /// What there is before any route: the title.
@@ -161,7 +175,7 @@ fn add_errors(path: &str, method: &str, operation: &mut Value) {
     let of = |applies: bool, statuses: &'static [u16]| if applies { statuses } else { &[] };
     let statuses = [
         of(true, &[403, 422, 431, 500]),
-        of(path.contains("{id}"), &[400, 404]),
+        of(path.contains('{'), &[400, 404]),
         of(has_body, &[400, 408, 413, 415, 422]),
         of(has_body && !draws, &[507]),
         of(conditional, &[412]),

@@ -3,6 +3,7 @@
 use super::problem::Problem;
 use crate::plan::FrameRequest;
 use crate::plan::request::Query;
+use crate::scene::gallery::{self, Piece};
 use crate::scene::{ModelOptions, UpAxis};
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
@@ -48,10 +49,27 @@ impl<S: Sync> FromRequestParts<S> for NoQuery {
     }
 }
 
-/// `up=y|z` and `floor=true|false`.
-pub(super) fn model_options(query: &mut Query) -> ModelOptions {
-    ModelOptions {
-        up: query.one_of("up", &[("y", UpAxis::Y), ("z", UpAxis::Z)]).unwrap_or(UpAxis::Y),
-        floor: query.flag("floor").unwrap_or(true),
+/// What a new scene is made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Source {
+    /// The body; a model in it as these say.
+    Body(ModelOptions),
+    /// The gallery; there is no body then.
+    Gallery(&'static Piece),
+}
+
+/// `from=NAME`, or else `up=y|z` and `floor=true|false`.
+pub(super) fn source(query: &mut Query) -> Source {
+    let piece = query.parsed("from", gallery::find);
+    let up = query.one_of("up", &[("y", UpAxis::Y), ("z", UpAxis::Z)]);
+    let floor = query.flag("floor");
+    let Some(piece) = piece else {
+        return Source::Body(ModelOptions { up: up.unwrap_or(UpAxis::Y), floor: floor.unwrap_or(true) });
+    };
+    for (name, is_given) in [("up", up.is_some()), ("floor", floor.is_some())] {
+        if is_given {
+            query.fault(name, "says how to make a scene of a model; what comes from the gallery is a scene");
+        }
     }
+    Source::Gallery(piece)
 }

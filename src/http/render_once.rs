@@ -1,7 +1,7 @@
 //! `/render.png`: a model or a scene in, its picture out, nothing kept.
 
 use super::problem::Problem;
-use super::query::{Pairs, model_options};
+use super::query::{Pairs, source};
 use super::{App, accept, blocking, body, frames, openapi};
 use crate::jobs::Format;
 use crate::plan::FrameRequest;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Body and query as for creating a scene and for its frame; nothing is kept.
 #[utoipa::path(
     post, path = "/render.png", tag = "frames",
-    params(openapi::ModelQuery, openapi::FrameQuery),
+    params(openapi::SourceQuery, openapi::FrameQuery),
     request_body(content((serde_json::Value = "application/json"), (String = "multipart/form-data"), (String = "model/obj"), (String = "text/plain"), (String = "application/octet-stream"), (String = "application/x-www-form-urlencoded"))),
     responses(
         (status = 200, description = "The picture", body = Vec<u8>, content_type = "image/png", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
@@ -28,9 +28,9 @@ pub(super) async fn post_png(
 ) -> Result<Response, Problem> {
     let format = Format::Png;
     accept::check(request.headers(), format.content_type())?;
-    let (options, frame) = pairs.read(|query| (model_options(query), FrameRequest::read(query)))?;
+    let (source, frame) = pairs.read(|query| (source(query), FrameRequest::read(query)))?;
     let headers = request.headers().clone();
-    let new = body::scene(request, app.body_bounds(), options).await?;
+    let new = body::scene(request, app.body_bounds(), source).await?;
     let limits = *app.renderer.limits();
     let scene = blocking::compile(move || new.compile(&limits)).await?;
     frames::draw(&app, "-", Arc::new(scene), frame, format, &headers).await

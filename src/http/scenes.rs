@@ -1,7 +1,7 @@
 //! `/scenes` and `/scenes/{id}`.
 
 use super::problem::Problem;
-use super::query::{NoQuery, Pairs, model_options};
+use super::query::{NoQuery, Pairs, source};
 use super::{App, blocking, body, etag, openapi};
 use crate::scene::store::{Entry, is_id};
 use axum::Json;
@@ -22,10 +22,11 @@ pub(super) async fn list(State(app): State<App>, _: NoQuery) -> Json<Vec<Value>>
 
 /// Create a scene
 ///
-/// From a scene document, a form of one with its files, or a model.
+/// From a scene document, a form of one with its files, or a model; or, with `from` and no body, from the
+/// gallery.
 #[utoipa::path(
     post, path = "/scenes", tag = "scenes",
-    params(openapi::ModelQuery),
+    params(openapi::SourceQuery),
     request_body(content((Value = "application/json"), (String = "multipart/form-data"), (String = "model/obj"), (String = "text/plain"), (String = "application/octet-stream"), (String = "application/x-www-form-urlencoded"))),
     responses((status = 201, description = "Created; its summary", body = openapi::Summary, headers(("Location" = String), ("ETag" = String)))),
 )]
@@ -34,8 +35,8 @@ pub(super) async fn create(
     pairs: Pairs,
     request: Request,
 ) -> Result<Response, Problem> {
-    let options = pairs.read(model_options)?;
-    let new = body::scene(request, app.body_bounds(), options).await?;
+    let source = pairs.read(source)?;
+    let new = body::scene(request, app.body_bounds(), source).await?;
     let store = Arc::clone(&app.store);
     let entry = blocking::compile(move || store.create(new)).await?;
     Ok(changed(&entry, true))
@@ -65,7 +66,7 @@ pub(super) async fn read(
 /// Create a scene under a name, or replace it
 #[utoipa::path(
     put, path = "/scenes/{id}", tag = "scenes",
-    params(("id" = String, Path, description = "The scene: `[A-Za-z0-9_-]{1,64}`"), openapi::ModelQuery, openapi::IfMatch),
+    params(("id" = String, Path, description = "The scene: `[A-Za-z0-9_-]{1,64}`"), openapi::SourceQuery, openapi::IfMatch),
     request_body(content((Value = "application/json"), (String = "multipart/form-data"), (String = "model/obj"), (String = "text/plain"), (String = "application/octet-stream"), (String = "application/x-www-form-urlencoded"))),
     responses(
         (status = 200, description = "Replaced; its summary", body = openapi::Summary, headers(("ETag" = String))),
@@ -79,9 +80,9 @@ pub(super) async fn replace(
     request: Request,
 ) -> Result<Response, Problem> {
     check_id(&id)?;
-    let options = pairs.read(model_options)?;
+    let source = pairs.read(source)?;
     let condition = etag::precondition(request.headers());
-    let new = body::scene(request, app.body_bounds(), options).await?;
+    let new = body::scene(request, app.body_bounds(), source).await?;
     let store = Arc::clone(&app.store);
     let (entry, created) = blocking::compile(move || store.put(&id, new, &condition)).await?;
     Ok(changed(&entry, created))

@@ -12,6 +12,7 @@ pub mod demo;
 pub mod document;
 pub mod files;
 pub mod framing;
+pub mod gallery;
 mod import_model;
 mod limits_check;
 pub mod patch;

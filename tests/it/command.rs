@@ -1,6 +1,8 @@
 //! The command line.
 
 use crate::client::{Client, TRIANGLE_OBJ, png_size, triangle};
+use axum::body::Body;
+use axum::http::Method;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
@@ -51,6 +53,17 @@ async fn render_writes_the_bytes_that_the_server_sends() {
     assert!(output.status.success(), "{}", error(&output));
     let written = std::fs::read(folder.0.join("out.png")).expect("a picture");
     assert_eq!(png_size(&written), (20, 10));
+}
+
+#[tokio::test]
+async fn a_document_of_the_gallery_is_drawn_with_what_lies_beside_it() {
+    let folder = Folder::new("gallery", &[]);
+    let document = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/gallery/figure.json");
+    let output = render(&folder, &[document, "-o", "-", "--width", "80", "--height", "60"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", error(&output));
+    let client = Client::new();
+    let path = "/render.png?from=figure&width=80&height=60";
+    assert_eq!(output.stdout, client.call(Method::POST, path, "", &[], Body::empty()).await.body);
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod draws;
 mod errors;
 mod files;
 mod frames;
+mod gallery;
 mod guard;
 mod measure;
 mod numerics;

@@ -62,6 +62,8 @@ async fn the_description_has_every_route_with_its_statuses() {
     assert_eq!(api["openapi"], "3.1.0");
     for (path, methods) in [
         ("/", "get"),
+        ("/gallery", "get"),
+        ("/gallery/{name}/picture", "get"),
         ("/healthz", "get"),
         ("/openapi.json", "get"),
         ("/readyz", "get"),

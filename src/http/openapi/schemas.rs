@@ -1,6 +1,7 @@
 //! Schemas that the annotations can't say: words, tuples in text, bodies by media type.
 
 use crate::plan::FrameRequest;
+use crate::scene::gallery;
 use serde_json::{Value, json};
 
 /// Narrows the parameters and bodies of a call to what is taken.
@@ -25,6 +26,10 @@ fn of_parameter(name: &str) -> Option<Value> {
         "samples" => Some(json!({ "type": "integer", "enum": [1, 2, 4, 8, 16] })),
         "output" | "shading" => Some(words(&FrameRequest::words(name))),
         "up" => Some(words(&["y", "z"])),
+        "from" => {
+            let names: Vec<&str> = gallery::pieces().iter().map(|piece| piece.name).collect();
+            Some(words(&names))
+        }
         "near" | "far" | "ortho" => Some(json!({ "type": "number", "exclusiveMinimum": 0 })),
         "eye" | "target" => Some(numbers("{2}")),
         "orbit" => Some(numbers("{1,2}")),

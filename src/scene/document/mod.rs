@@ -30,8 +30,8 @@ pub use meshes::{MeshPart, Triangles};
 pub use post::{PostEffect, TonemapOperator};
 pub use surfaces::{MapUse, MaterialPart, TexturePart, TextureSource};
 
-pub(in crate::scene) use reader::Faults;
-pub(crate) use reader::token;
+pub(in crate::scene) use reader::{Faults, clipped};
+pub(crate) use reader::{suggestion, token};
 pub(in crate::scene) use references::{check_files, missing_file};
 
 use super::Files;

@@ -8,11 +8,13 @@ mod relief;
 
 use crate::draw::{file, frame, output, png, samples, scene_with};
 use rasterd::encode;
+use rasterd::limits::Limits;
 use rasterd::pipeline::Frame;
 use rasterd::plan::{FrameRequest, Output};
-use rasterd::scene::Files;
+use rasterd::scene::{Files, gallery};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A picture as its file holds it.
 #[derive(PartialEq)]
@@ -321,4 +323,13 @@ fn golden_outputs() {
     document["camera"]["orthographic"] = json!({ "height": 2.6 });
     document["camera"].as_object_mut().expect("a camera").remove("fov_y_deg");
     assert_golden("output/an_orthographic_camera", &draw(&document, &Files::default(), &samples(4)));
+}
+
+#[test]
+fn golden_gallery() {
+    let request = FrameRequest { width: Some(160), height: Some(120), ..FrameRequest::default() };
+    for piece in gallery::pieces() {
+        let scene = piece.to_scene().compile(&Limits::default()).expect("a scene");
+        assert_golden(&format!("gallery/{}", piece.name), &frame(&Arc::new(scene), &request));
+    }
 }

@@ -33,7 +33,7 @@ pub(crate) fn suggestion<'w>(word: &str, candidates: impl IntoIterator<Item = &'
 }
 
 /// The start of a text that a client may have made arbitrarily long.
-pub(in crate::scene::document) fn clipped(text: &str) -> String {
+pub(in crate::scene) fn clipped(text: &str) -> String {
     match text.char_indices().nth(64) {
         None => text.to_owned(),
         Some((end, _)) => format!("{}…", &text[..end]),

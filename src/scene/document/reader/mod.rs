@@ -8,7 +8,7 @@ mod messages;
 mod numbers;
 mod object;
 
-pub(super) use messages::clipped;
+pub(in crate::scene) use messages::clipped;
 pub(crate) use messages::{suggestion, token};
 pub(super) use object::Object;
 
