@@ -339,6 +339,8 @@ async function openPiece(name) {
     const response = await fetch(`/scenes/${id}?${query}`, { method: "PUT", headers: { "If-None-Match": "*" } });
     if (!response.ok && response.status !== 412) throw await problemOf(response);
     await openScene(id);
+    // On a small screen the picture is above the list.
+    view.scrollIntoView({ block: "nearest" });
   } catch (error) {
     showProblem(error, "The scene could not be opened");
   } finally {

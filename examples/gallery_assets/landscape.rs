@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 const SUN: DVec3 = dvec3(0.62, 0.42, -0.66);
 
 /// Texels along a side of a face.
-const SIDE: u32 = 512;
+const SIDE: u32 = 768;
 
 /// The lake's noises: made once for all six faces.
 #[derive(Debug)]
@@ -34,9 +34,9 @@ struct Range {
 
 /// Far to near.
 const RANGES: [Range; 3] = [
-    Range { crest_deg: [3.0, 21.0], foot: [168.0, 190.0, 214.0], top: [108.0, 136.0, 172.0], snow_deg: 11.0 },
-    Range { crest_deg: [1.5, 9.5], foot: [122.0, 152.0, 158.0], top: [72.0, 108.0, 110.0], snow_deg: 90.0 },
-    Range { crest_deg: [0.4, 4.2], foot: [64.0, 92.0, 62.0], top: [38.0, 66.0, 46.0], snow_deg: 90.0 },
+    Range { crest_deg: [2.5, 16.0], foot: [168.0, 190.0, 214.0], top: [108.0, 136.0, 172.0], snow_deg: 8.0 },
+    Range { crest_deg: [1.2, 6.5], foot: [122.0, 152.0, 158.0], top: [72.0, 108.0, 110.0], snow_deg: 90.0 },
+    Range { crest_deg: [0.3, 2.7], foot: [64.0, 92.0, 62.0], top: [38.0, 66.0, 46.0], snow_deg: 90.0 },
 ];
 
 impl Lake {
@@ -84,9 +84,9 @@ impl Lake {
         }
         let height = (elevation_deg / high).clamp(0.0, 1.0);
         let rock = self.rocks.at((around * 3.0).fract(), (0.1 + elevation_deg / 24.0).clamp(0.0, 1.0));
-        let slope = shade(blend(range.foot, range.top, smoothstep(0.0, 0.7, height)), 0.84 + 0.32 * rock);
-        let line = range.snow_deg + 7.0 * (rock - 0.5);
-        let snow = smoothstep(line, line + 1.2, elevation_deg) * smoothstep(0.3, 0.5, rock);
+        let slope = shade(blend(range.foot, range.top, smoothstep(0.0, 0.7, height)), 0.76 + 0.48 * rock);
+        let line = range.snow_deg + 9.0 * (rock - 0.5);
+        let snow = smoothstep(line, line + 1.2, elevation_deg) * smoothstep(0.2, 0.4, rock);
         let color = blend(slope, [236.0, 240.0, 248.0], 0.85 * snow);
         Some((color, smoothstep(-0.1, 0.12, crest - elevation_deg)))
     }

@@ -65,8 +65,8 @@ pub(super) static PIECES: &[Piece] = &[
     ),
     piece!(
         "pcf-pcss",
-        "one lamp each: PCF on the left, PCSS on the right",
-        "Two point lights with shadows all around: one blurred evenly, one the softer the farther it falls.",
+        "PCF beside PCSS",
+        "A point light each: the left one's shadows have an even edge, the right one's soften with distance.",
         ["planks.jpg"]
     ),
     piece!(

@@ -74,7 +74,7 @@ fn all_that_lies_in_the_folder_is_embedded_and_small() {
 #[test]
 fn every_file_belongs_to_a_piece() {
     for (name, _) in pieces::FILES {
-        assert!(pieces().iter().any(|piece| piece.files.contains(&name)), "{name}");
+        assert!(pieces().iter().any(|piece| piece.files.contains(name)), "{name}");
     }
 }
 
