@@ -275,7 +275,11 @@ fn background(scene: &Scene, request: &FrameRequest) -> Result<Background, PlanE
     }
 }
 
-fn camera(
+/// The camera of a frame of `width` × `height` pixels.
+///
+/// # Errors
+/// [`PlanError::Query`]: overrides that contradict the scene.
+pub fn camera(
     scene: &Scene,
     request: &FrameRequest,
     width: u32,

@@ -42,11 +42,28 @@ pub struct FrameRequest {
     pub ortho_height: Option<f64>,
     /// Moves the camera about its target.
     pub orbit: Option<Orbit>,
+    /// Turns the camera about the vertical through its target, after all else: degrees, as yaw counts.
+    /// No query has it; see [`FrameRequest::turned`].
+    pub turn_deg: f64,
     /// Replaces the background.
     pub background: Option<BackgroundRequest>,
     /// What may be left out; the picture is the same whatever it says. `None`: as the program was
     /// started.
     pub elide: Option<Elide>,
+}
+
+impl FrameRequest {
+    /// The same frame from `deg` degrees farther about the vertical: with an [`Orbit`], its yaw is that
+    /// much more.
+    #[must_use]
+    pub fn turned(&self, deg: f64) -> Self {
+        match self.orbit {
+            Some(orbit) => {
+                Self { orbit: Some(Orbit { yaw_deg: orbit.yaw_deg + deg, ..orbit }), ..self.clone() }
+            }
+            None => Self { turn_deg: self.turn_deg + deg, ..self.clone() },
+        }
+    }
 }
 
 impl Elide {
@@ -125,5 +142,11 @@ impl Output {
             // Beside the colour which triangle is seen.
             Self::Radiance | Self::Wireframe => 16,
         }
+    }
+
+    /// Whether it is a picture of 16-bit values, not of colours.
+    #[must_use]
+    pub fn is_values(self) -> bool {
+        matches!(self, Self::Depth | Self::Instance)
     }
 }

@@ -111,7 +111,7 @@ fn place(scene: &Scene, request: &FrameRequest, lens: Lens, aspect: f64) -> Plac
         Some(orbit) => orbited(&placed, orbit, distance),
         None => placed,
     };
-    turned_by_time(placed, camera.orbit_deg_per_s * request.t)
+    turned_by_time(turned(placed, request.turn_deg), camera.orbit_deg_per_s * request.t)
 }
 
 /// About the target: yaw 0 looks from +z, 90 from +x; pitch 90 from above.
@@ -127,6 +127,15 @@ fn orbited(placed: &Placed, orbit: Orbit, distance: f64) -> Placed {
         placed.up
     };
     Placed { eye, up, ..*placed }
+}
+
+/// Turned as a whole about the vertical through the target, as yaw counts.
+fn turned(placed: Placed, deg: f64) -> Placed {
+    if deg == 0.0 {
+        return placed;
+    }
+    let turn = rotation_about_deg(DVec3::Y, deg);
+    Placed { eye: placed.target + turn * (placed.eye - placed.target), up: turn * placed.up, ..placed }
 }
 
 /// Turned about an axis through the target along up.

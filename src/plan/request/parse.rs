@@ -66,6 +66,7 @@ impl FrameRequest {
             far: query.positive("far"),
             ortho_height: query.positive("ortho"),
             orbit: query.parsed("orbit", orbit),
+            turn_deg: 0.0,
             background: query.parsed("background", background),
             elide: query.parsed("elide", str::parse),
         };
@@ -104,6 +105,36 @@ fn output(text: &str) -> Result<Output, String> {
     match OUTPUTS.iter().find(|(word, _)| *word == text) {
         Some((_, output)) => Ok(*output),
         None => Err(not_one_of(text, OUTPUTS.iter().map(|(word, _)| *word))),
+    }
+}
+
+impl Output {
+    /// What a query calls it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        OUTPUTS.iter().find(|(_, output)| *output == self).map_or("", |(word, _)| word)
+    }
+
+    /// Every output that a query can name.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        OUTPUTS.iter().map(|(_, output)| *output).collect()
+    }
+
+    /// A list of words with commas between, none of them twice.
+    ///
+    /// # Errors
+    /// What is wrong with it, for the client.
+    pub fn list(text: &str) -> Result<Vec<Self>, String> {
+        let mut outputs = Vec::new();
+        for word in text.split(',').map(str::trim) {
+            let output = output(word)?;
+            if outputs.contains(&output) {
+                return Err(format!("names {word} more than once"));
+            }
+            outputs.push(output);
+        }
+        Ok(outputs)
     }
 }
 
@@ -214,6 +245,7 @@ mod tests {
             far: Some(10.0),
             ortho_height: Some(3.0),
             orbit: Some(Orbit { yaw_deg: 30.0, pitch_deg: 20.0, distance: Some(5.0) }),
+            turn_deg: 0.0,
             background: Some(BackgroundRequest::Color(Vec3::X)),
             elide: Some(Elide::None),
         };
@@ -249,6 +281,22 @@ mod tests {
             let fault = text.parse::<Elide>().expect_err("a fault");
             assert!(fault.contains("(there are none yet)"), "{fault}");
         }
+    }
+
+    #[test]
+    fn a_list_of_outputs_names_each_once() {
+        assert_eq!(Output::list("depth, color"), Ok(vec![Output::Depth, Output::Color]));
+        assert_eq!(Output::list("depth,depth"), Err("names depth more than once".to_owned()));
+        let fault = Output::list("color,").unwrap_err();
+        assert_eq!(fault, "must be one of color, depth, normal, albedo, instance, is \"\"");
+        assert!(Output::all().into_iter().all(|output| Output::list(output.word()) == Ok(vec![output])));
+    }
+
+    #[test]
+    fn a_turn_adds_to_the_yaw_that_is_there() {
+        let orbiting = FrameRequest::parse([("orbit", "30,20")]).expect("a query").turned(45.0);
+        assert_eq!(orbiting.orbit, Some(Orbit { yaw_deg: 75.0, pitch_deg: 20.0, distance: None }));
+        assert_eq!((orbiting.turn_deg, FrameRequest::default().turned(45.0).turn_deg), (0.0, 45.0));
     }
 
     #[test]
