@@ -1,8 +1,10 @@
 //! PNG.
 
+use super::rgb;
 use crate::math::colour::srgb_from_linear;
 use crate::pipeline::{Frame, Pixels};
-use png::{BitDepth, ColorType, Compression, Encoder};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError};
+use std::borrow::Cow;
 
 /// Encodes a frame: RGB where it is opaque, RGBA where it is not, 16-bit grey for values. Linear colour
 /// is clamped to 0–1 and sRGB-encoded.
@@ -10,39 +12,47 @@ use png::{BitDepth, ColorType, Compression, Encoder};
 /// The bytes depend on the pixels alone: no clock, no machine.
 #[must_use]
 pub fn png(frame: &Frame) -> Vec<u8> {
-    let (color, depth, data) = match &frame.pixels {
-        Pixels::Rgba8 { pixels, opaque: true } => {
-            (ColorType::Rgb, BitDepth::Eight, pixels.iter().flat_map(|p| [p[0], p[1], p[2]]).collect())
-        }
-        Pixels::Rgba8 { pixels, opaque: false } => {
-            (ColorType::Rgba, BitDepth::Eight, pixels.as_flattened().to_vec())
-        }
-        Pixels::Rgba32F { pixels, opaque } => {
-            let (color, channels) = if *opaque { (ColorType::Rgb, 3) } else { (ColorType::Rgba, 4) };
-            let codes = pixels.iter().flat_map(|&p| codes(p).into_iter().take(channels));
-            (color, BitDepth::Eight, codes.collect())
-        }
-        Pixels::Gray16(pixels) => (
-            ColorType::Grayscale,
-            BitDepth::Sixteen,
-            pixels.iter().flat_map(|p| p.to_be_bytes()).collect::<Vec<u8>>(),
-        ),
-    };
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, frame.width, frame.height);
+    let encoder = encoder(frame, &mut bytes);
+    let write = || -> Result<(), EncodingError> {
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&samples(&frame.pixels))?;
+        writer.finish()
+    };
+    write().expect("writing a picture of at least one pixel to memory succeeds");
+    bytes
+}
+
+/// An encoder for pictures like `frame`.
+pub(super) fn encoder<'a>(frame: &Frame, bytes: &'a mut Vec<u8>) -> Encoder<'static, &'a mut Vec<u8>> {
+    let (color, depth) = match frame.pixels {
+        Pixels::Rgba8 { opaque: true, .. } | Pixels::Rgba32F { opaque: true, .. } => {
+            (ColorType::Rgb, BitDepth::Eight)
+        }
+        Pixels::Rgba8 { .. } | Pixels::Rgba32F { .. } => (ColorType::Rgba, BitDepth::Eight),
+        Pixels::Gray16(_) => (ColorType::Grayscale, BitDepth::Sixteen),
+    };
+    let mut encoder = Encoder::new(bytes, frame.width, frame.height);
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(Compression::Fast);
     if color != ColorType::Grayscale {
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     }
-    let write = |encoder: Encoder<&mut Vec<u8>>| -> Result<(), png::EncodingError> {
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&data)?;
-        writer.finish()
-    };
-    write(encoder).expect("writing a picture of at least one pixel to memory succeeds");
-    bytes
+    encoder
+}
+
+/// The samples of `pixels` as PNG has them: 16 bits with the high byte first.
+pub(super) fn samples(pixels: &Pixels) -> Cow<'_, [u8]> {
+    match pixels {
+        Pixels::Rgba8 { pixels, opaque: true } => rgb(pixels).into(),
+        Pixels::Rgba8 { pixels, opaque: false } => pixels.as_flattened().into(),
+        Pixels::Rgba32F { pixels, opaque } => {
+            let channels = if *opaque { 3 } else { 4 };
+            pixels.iter().flat_map(|&p| codes(p).into_iter().take(channels)).collect()
+        }
+        Pixels::Gray16(values) => values.iter().flat_map(|value| value.to_be_bytes()).collect(),
+    }
 }
 
 /// sRGB codes of a linear colour, and its alpha's.
