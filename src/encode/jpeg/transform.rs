@@ -270,7 +270,10 @@ mod tests {
             let of = |level| blocks(level, &pixels, 50, chroma, &Quantization::of_quality(85));
             let expected = of(Level::new());
             assert_eq!(expected.len(), if chroma == Chroma::Full { 7 * 5 * 3 } else { 4 * 3 * 6 });
-            assert!(of(Level::fallback()) == expected);
+            for name in ["scalar", "sse2", "sse4.2", "avx2", "avx512", "neon"] {
+                let level = name.parse::<crate::settings::Simd>();
+                assert!(level.is_err() || level.is_ok_and(|level| of(level.level()) == expected), "{name}");
+            }
         }
     }
 }
