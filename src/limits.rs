@@ -59,6 +59,10 @@ pub const MAX_PATCH_DEPTH: usize = 64;
 /// document can place a large mesh often. What is beyond keeps the bounds of its turned box. Fixed.
 pub const MAX_MEASURED_VERTICES: usize = 1 << 27;
 
+/// Frames of a turntable: one for each degree. More would only last longer, and hold the others up for
+/// as long. Fixed.
+pub const MAX_TURNTABLE_FRAMES: u32 = 360;
+
 /// Bounds on what a client may ask for. A value over its bound is a 413 that names limit, value
 /// and setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,6 +3,7 @@
 //! Exit code 0 when all went well, 1 for bad input or a failed check, 2 for wrong usage (clap's own).
 
 mod beside;
+mod destination;
 mod healthcheck;
 mod render;
 mod serve;
@@ -32,7 +33,7 @@ enum Command {
     /// Serve scenes over HTTP (also without naming it)
     #[command(after_help = LOG_HELP)]
     Serve(Box<Settings>),
-    /// Draw a model or a scene document into a PNG
+    /// Draw a model or a scene document into a picture, a turntable or an archive of outputs
     Render(Box<render::Render>),
     /// Ask a server on the listening address whether it lives
     Healthcheck(healthcheck::Healthcheck),

@@ -2,12 +2,13 @@
 
 use super::Failure;
 use super::beside::Gathered;
+use super::destination::Destination;
 use rasterd::http::Problem;
-use rasterd::jobs::{Format, Renderer};
+use rasterd::jobs::{Product, Renderer};
 use rasterd::plan::FrameRequest;
+use rasterd::plan::request::Query;
 use rasterd::scene::{Files, ModelOptions, NewScene, UpAxis};
 use rasterd::settings::{Machine, Settings};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The arguments of `rasterd render`.
@@ -17,9 +18,10 @@ pub(super) struct Render {
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
-    /// The PNG to write; - is standard output
-    #[arg(short, long, value_name = "OUT")]
-    out: PathBuf,
+    /// The file to write, of the kind that its ending says: .png, .jpg, .webp, .exr, .hdr; a turntable
+    /// as .gif or .apng; several outputs as .zip. - is standard output, PNG
+    #[arg(short, long, value_name = "OUT", value_parser = Destination::parser())]
+    out: Destination,
 
     #[command(flatten)]
     frame: FrameFlags,
@@ -86,11 +88,17 @@ struct FrameFlags {
     /// transparent, rrggbb, or a name of the document's backgrounds
     #[arg(long, allow_hyphen_values = true)]
     background: Option<String>,
+    /// Of a turntable: frames of a whole turn [default: 36]
+    #[arg(long, allow_hyphen_values = true)]
+    frames: Option<String>,
+    /// Of an archive: outputs with commas between [default: all]
+    #[arg(long, allow_hyphen_values = true)]
+    outputs: Option<String>,
 }
 
 impl FrameFlags {
     fn pairs(&self) -> impl Iterator<Item = (&str, &str)> {
-        let flags: [(&str, _); 15] = [
+        let flags: [(&str, _); 17] = [
             ("width", &self.width),
             ("height", &self.height),
             ("samples", &self.samples),
@@ -106,6 +114,8 @@ impl FrameFlags {
             ("ortho", &self.ortho),
             ("orbit", &self.orbit),
             ("background", &self.background),
+            ("frames", &self.frames),
+            ("outputs", &self.outputs),
         ];
         flags.into_iter().filter_map(|(name, value)| Some((name, value.as_deref()?)))
     }
@@ -114,8 +124,8 @@ impl FrameFlags {
 impl Render {
     /// Files → scene → picture → file.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let request = FrameRequest::parse(self.frame.pairs()).map_err(|faults| Problem::query(&faults))?;
-        let format = format_of(&self.out)?;
+        self.check_usage().unwrap_or_else(|error| error.exit());
+        let (product, request) = self.query()?;
         let new = read(&self.files, ModelOptions { up: self.up, floor: self.floor })?;
         let settings = Settings { machine: self.machine, ..environment()? };
         let scene = std::sync::Arc::new(new.compile(&settings.limits())?);
@@ -124,8 +134,27 @@ impl Render {
         for warning in &scene.warnings {
             eprintln!("rasterd: {}{}", place(warning), warning.detail);
         }
-        let rendered = renderer.render_now(&scene, &request, format)?;
-        write(&self.out, &rendered.bytes).map_err(|error| Failure::new(self.out.display(), error))
+        let rendered = renderer.render_now(&scene, &request, product)?;
+        self.out.write(&rendered.bytes).map_err(|error| Failure::new(&self.out, error))
+    }
+
+    /// Refuses flags that the kind of file has no use for.
+    fn check_usage(&self) -> Result<(), clap::Error> {
+        let flags = [("frames", &self.frame.frames), ("outputs", &self.frame.outputs)];
+        let idle = flags.iter().find(|(name, value)| value.is_some() && !self.out.takes(name));
+        idle.map_or(Ok(()), |(name, _)| {
+            let detail = format!("--{name} says nothing about {}: {}\n", self.out, Destination::USES);
+            Err(clap::Error::raw(clap::error::ErrorKind::ArgumentConflict, detail))
+        })
+    }
+
+    /// What to draw, by the reader of the server's query.
+    fn query(&self) -> Result<(Product, FrameRequest), Problem> {
+        let mut query = Query::new(self.frame.pairs());
+        let product = self.out.product(&mut query);
+        let request = FrameRequest::read(&mut query);
+        query.finish().map_err(|faults| Problem::query(&faults))?;
+        Ok((product, request))
     }
 }
 
@@ -140,15 +169,6 @@ fn place(warning: &rasterd::scene::Warning) -> String {
         (Some(file), Some(line)) => format!("warning: {file}, line {line}: "),
         (Some(file), None) => format!("warning: {file}: "),
         _ => "warning: ".to_owned(),
-    }
-}
-
-/// By the file's ending; standard output takes a PNG.
-fn format_of(out: &Path) -> Result<Format, Failure> {
-    let ending = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    match ending.as_deref() {
-        None | Some("png") => Ok(Format::Png),
-        Some(other) => Err(Failure(format!("this version writes pictures as .png alone, not as .{other}"))),
     }
 }
 
@@ -186,16 +206,6 @@ fn file_name(path: &Path, alone: bool) -> String {
     if alone && !is_obj { format!("{name}.obj") } else { name }
 }
 
-fn write(out: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if out == Path::new("-") {
-        let mut stdout = std::io::stdout().lock();
-        stdout.write_all(bytes)?;
-        stdout.flush()
-    } else {
-        std::fs::write(out, bytes)
-    }
-}
-
 fn up_axis(text: &str) -> Result<UpAxis, String> {
     match text {
         "y" => Ok(UpAxis::Y),
@@ -207,7 +217,6 @@ fn up_axis(text: &str) -> Result<UpAxis, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rasterd::plan::request::Query;
 
     #[derive(clap::Parser)]
     struct Flags {
@@ -239,8 +248,15 @@ mod tests {
     }
 
     #[test]
-    fn the_ending_picks_the_format() {
-        assert!(format_of(Path::new("-")).is_ok() && format_of(Path::new("a/b.PNG")).is_ok());
-        assert!(format_of(Path::new("a.jpg")).is_err());
+    fn flags_of_another_kind_of_file_are_wrong_usage() {
+        let usage = |arguments: &[&str]| {
+            let arguments = ["render", "a.obj", "-o"].iter().chain(arguments).copied();
+            parse(&arguments.collect::<Vec<_>>()).check_usage()
+        };
+        assert!(usage(&["a.gif", "--frames", "3"]).is_ok());
+        assert!(usage(&["a.zip", "--outputs", "depth"]).is_ok());
+        let error = usage(&["a.png", "--frames", "3"]).expect_err("a fault").to_string();
+        assert!(error.contains("--frames says nothing about a.png"), "{error}");
+        assert!(usage(&["a.gif", "--outputs", "depth"]).is_err());
     }
 }

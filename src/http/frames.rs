@@ -1,10 +1,10 @@
-//! `/scenes/{id}/frame.png`: the picture.
+//! `/scenes/{id}/frame.png`, `.jpg`, …: the picture.
 
 use super::observe::FrameNote;
 use super::problem::Problem;
 use super::query::Pairs;
 use super::{App, accept, blocking, body, etag, openapi};
-use crate::jobs::{Format, Rendered};
+use crate::jobs::{Format, Product, Rendered};
 use crate::plan::FrameRequest;
 use crate::scene::Scene;
 use axum::extract::{Path, Request, State};
@@ -23,20 +23,20 @@ const NO_CACHE: (HeaderName, HeaderValue) = (CACHE_CONTROL, HeaderValue::from_st
 
 /// Draw a frame
 #[utoipa::path(
-    get, path = "/scenes/{id}/frame.png", tag = "frames",
+    get, path = "/scenes/{id}/frame.{format}", tag = "frames",
     params(("id" = String, Path, description = "The scene"), openapi::FrameQuery),
     responses(
-        (status = 200, description = "The picture", body = Vec<u8>, content_type = "image/png", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]
-pub(super) async fn get_png(
+pub(super) async fn read(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Path((id, extension)): Path<(String, String)>,
     pairs: Pairs,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let format = Format::Png;
+    let format = format(&extension)?;
     accept::check(&headers, format.content_type())?;
     let request = pairs.frame()?;
     let scene = app.entry(&id)?.scene;
@@ -47,34 +47,45 @@ pub(super) async fn get_png(
 ///
 /// The body is a JSON merge patch that holds for this frame alone.
 #[utoipa::path(
-    post, path = "/scenes/{id}/frame.png", tag = "frames",
+    post, path = "/scenes/{id}/frame.{format}", tag = "frames",
     params(("id" = String, Path, description = "The scene"), openapi::FrameQuery),
     request_body(content((serde_json::Value = "application/merge-patch+json"), (serde_json::Value = "application/json"))),
     responses(
-        (status = 200, description = "The picture", body = Vec<u8>, content_type = "image/png", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]
-pub(super) async fn post_png(
+pub(super) async fn of_changed(
     State(app): State<App>,
-    Path(id): Path<String>,
+    Path((id, extension)): Path<(String, String)>,
     pairs: Pairs,
     request: Request,
 ) -> Result<Response, Problem> {
-    let format = Format::Png;
+    let format = format(&extension)?;
     accept::check(request.headers(), format.content_type())?;
     let frame = pairs.frame()?;
-    let entry = app.entry(&id)?;
     let headers = request.headers().clone();
-    let patch = body::patch(request, app.body_bounds()).await?;
-    let limits = *app.renderer.limits();
-    let scene = blocking::compile(move || entry.patched(&patch, &limits)).await?;
+    let scene = changed(&app, &id, request).await?;
     draw(&app, &id, scene, frame, format, &headers).await
 }
 
-/// A picture format of the contract that this version does not write.
-pub(super) async fn not_yet() -> Problem {
-    Problem::new(StatusCode::NOT_ACCEPTABLE, "this version writes pictures as .png alone")
+/// The format that a path ends with, else a 406 that names all.
+pub(super) fn format(extension: &str) -> Result<Format, Problem> {
+    Format::of_extension(extension).ok_or_else(|| no_format("pictures", extension, &Format::list()))
+}
+
+/// 406 for an extension that is none of `known`.
+pub(super) fn no_format(what: &str, extension: &str, known: &str) -> Problem {
+    let extension: String = extension.chars().take(16).collect();
+    Problem::new(StatusCode::NOT_ACCEPTABLE, format!("{what} come as {known}, not as .{extension}"))
+}
+
+/// The scene with the patch in the body of `request`, which nobody else sees.
+pub(super) async fn changed(app: &App, id: &str, request: Request) -> Result<Arc<Scene>, Problem> {
+    let entry = app.entry(id)?;
+    let patch = body::patch(request, app.body_bounds()).await?;
+    let limits = *app.renderer.limits();
+    blocking::compile(move || entry.patched(&patch, &limits)).await
 }
 
 /// Draws and replies, or says that the client has the picture already; `name` is the scene's, for the
@@ -84,16 +95,17 @@ pub(super) async fn draw(
     name: &str,
     scene: Arc<Scene>,
     request: FrameRequest,
-    format: Format,
+    product: impl Into<Product>,
     headers: &HeaderMap,
 ) -> Result<Response, Problem> {
+    let product = product.into();
     if etag::is_conditional(headers) {
-        let tag = app.renderer.etag(Arc::clone(&scene), request.clone()).await?;
+        let tag = app.renderer.etag(Arc::clone(&scene), request.clone(), product.clone()).await?;
         if etag::none_match_names(headers, &tag) {
             return Ok((StatusCode::NOT_MODIFIED, [NO_CACHE], [(ETAG, tag)]).into_response());
         }
     }
-    Ok(reply(name, app.renderer.render(scene, request, format).await?))
+    Ok(reply(name, app.renderer.render(scene, request, product).await?))
 }
 
 fn reply(name: &str, rendered: Rendered) -> Response {

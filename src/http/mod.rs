@@ -5,6 +5,7 @@
 //! async workers through `blocking` or [`crate::jobs`].
 
 mod accept;
+mod archive;
 mod blocking;
 mod body;
 mod connection;
@@ -25,6 +26,7 @@ mod reticent;
 mod scenes;
 pub mod serve;
 mod service;
+mod turntables;
 
 pub use body::{json, sniffed};
 pub use problem::Problem;
@@ -36,7 +38,6 @@ use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
-use axum::routing::{MethodRouter, get, post};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tower_http::catch_panic::CatchPanicLayer;
@@ -93,9 +94,11 @@ pub fn router(app: App) -> Router {
         .routes(routes!(scenes::read, scenes::replace, scenes::patch, scenes::remove))
         .routes(routes!(files::list))
         .routes(routes!(files::read, files::replace, files::remove))
-        .routes(routes!(frames::get_png, frames::post_png))
+        .routes(routes!(frames::read, frames::of_changed))
+        .routes(routes!(archive::read, archive::of_changed))
+        .routes(routes!(turntables::read))
         .routes(routes!(pick::read))
-        .routes(routes!(render_once::post_png))
+        .routes(routes!(render_once::draw))
         .routes(routes!(gallery::list))
         .routes(routes!(gallery::picture))
         .routes(routes!(page::index))
@@ -104,11 +107,7 @@ pub fn router(app: App) -> Router {
         .routes(routes!(service::version))
         .split_for_parts();
 
-    ["jpg", "webp", "exr", "hdr", "zip"]
-        .iter()
-        .fold(routes, |routes, format| routes.route(&format!("/scenes/{{id}}/frame.{format}"), not_yet()))
-        .route("/render.jpg", post(frames::not_yet))
-        .route("/render.webp", post(frames::not_yet))
+    routes
         .route("/openapi.json", openapi::route(api))
         .merge(page::parts())
         .layer(from_fn_with_state(app.clone(), guard::check))
@@ -116,9 +115,4 @@ pub fn router(app: App) -> Router {
         .layer(from_fn(observe::observe))
         .layer(DefaultBodyLimit::disable()) // body.rs has the limit, and words for it
         .with_state(app)
-}
-
-/// A picture format of the contract that this version does not write.
-fn not_yet() -> MethodRouter<App> {
-    get(frames::not_yet).post(frames::not_yet)
 }

@@ -1,5 +1,6 @@
 //! `/openapi.json`: OpenAPI 3.1 from the handlers' own annotations.
 
+mod pictures;
 mod schemas;
 
 use super::App;
@@ -53,6 +54,28 @@ pub(super) struct FrameQuery {
     background: Option<String>,
     /// What may be left out where the picture stays the same: `all` or `none`
     elide: Option<String>,
+}
+
+/// What an archive holds.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(dead_code, reason = "names and types for the description; `Product::read_archive` does the reading")]
+pub(super) struct Outputs {
+    /// Outputs with commas between; without it, all there are. It stands for `output`, which is not taken
+    outputs: Option<String>,
+}
+
+/// How a turntable turns.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(
+    dead_code,
+    reason = "names and types for the description; `Product::read_turntable` does the reading"
+)]
+pub(super) struct Turn {
+    /// Frames of a whole turn; 36 without it
+    #[param(minimum = 1, maximum = 360)]
+    frames: Option<u32>,
 }
 
 /// What a new scene is made of.
@@ -148,11 +171,14 @@ fn described(api: OpenApi) -> Value {
         "responses": { "200": { "description": "OpenAPI 3.1", "content": { "application/json": { "schema": {} } } } },
     } });
     api["components"]["schemas"]["Problem"] = problem_schema();
-    let paths = api["paths"].as_object_mut().into_iter().flatten();
+    let Some(paths) = api["paths"].as_object_mut() else { return api };
+    for item in paths.values_mut() {
+        item.as_object_mut().into_iter().flatten().for_each(|(_, operation)| schemas::narrow(operation));
+    }
+    pictures::expand(paths);
     for (path, item) in paths {
         for (method, operation) in item.as_object_mut().into_iter().flatten() {
             operation["operationId"] = json!(operation_id(path, method));
-            schemas::narrow(operation);
             add_errors(path, method, operation);
         }
     }
@@ -168,8 +194,8 @@ fn operation_id(path: &str, method: &str) -> String {
 /// Every status that the call's shape lets it answer, beside those it names itself.
 fn add_errors(path: &str, method: &str, operation: &mut Value) {
     let has_body = operation.get("requestBody").is_some();
-    let draws = path.ends_with(".png") || path.ends_with("/pick");
-    let sends_picture = path.ends_with(".png");
+    let sends_picture = ["/frame.", "/turntable.", "/render."].iter().any(|stem| path.contains(stem));
+    let draws = sends_picture || path.ends_with("/pick");
     let changes = method != "get";
     let conditional = changes && path.contains("{id}") && !draws;
     let of = |applies: bool, statuses: &'static [u16]| if applies { statuses } else { &[] };

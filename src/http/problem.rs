@@ -1,5 +1,6 @@
 //! Every error of the service → `application/problem+json` (RFC 9457). The only such place.
 
+use crate::encode::Unfit;
 use crate::jobs::JobError;
 use crate::plan::{PlanError, QueryFault};
 use crate::scene::Fault;
@@ -167,6 +168,8 @@ impl From<JobError> for Problem {
         let detail = error.to_string();
         match error {
             JobError::Plan(error) => error.into(),
+            JobError::Unfit(Unfit::Values { .. }) => Self::new(StatusCode::NOT_ACCEPTABLE, detail),
+            JobError::Unfit(Unfit::Data { .. }) => Self::query(&[QueryFault::new("output", detail)]),
             JobError::Full(_) | JobError::Closing | JobError::Cancelled => {
                 Self::new(StatusCode::SERVICE_UNAVAILABLE, detail)
             }

@@ -1,11 +1,10 @@
-//! `/render.png`: a model or a scene in, its picture out, nothing kept.
+//! `/render.png`, `.jpg`, …: a model or a scene in, its picture out, nothing kept.
 
 use super::problem::Problem;
 use super::query::{Pairs, source};
 use super::{App, accept, blocking, body, frames, openapi};
-use crate::jobs::Format;
 use crate::plan::FrameRequest;
-use axum::extract::{Request, State};
+use axum::extract::{Path, Request, State};
 use axum::response::Response;
 use std::sync::Arc;
 
@@ -13,20 +12,21 @@ use std::sync::Arc;
 ///
 /// Body and query as for creating a scene and for its frame; nothing is kept.
 #[utoipa::path(
-    post, path = "/render.png", tag = "frames",
+    post, path = "/render.{format}", tag = "frames",
     params(openapi::SourceQuery, openapi::FrameQuery),
     request_body(content((serde_json::Value = "application/json"), (String = "multipart/form-data"), (String = "model/obj"), (String = "text/plain"), (String = "application/octet-stream"), (String = "application/x-www-form-urlencoded"))),
     responses(
-        (status = 200, description = "The picture", body = Vec<u8>, content_type = "image/png", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]
-pub(super) async fn post_png(
+pub(super) async fn draw(
     State(app): State<App>,
+    Path(extension): Path<String>,
     pairs: Pairs,
     request: Request,
 ) -> Result<Response, Problem> {
-    let format = Format::Png;
+    let format = frames::format(&extension)?;
     accept::check(request.headers(), format.content_type())?;
     let (source, frame) = pairs.read(|query| (source(query), FrameRequest::read(query)))?;
     let headers = request.headers().clone();

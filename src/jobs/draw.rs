@@ -1,127 +1,192 @@
-//! The stages after the plan: pipeline → encode, and what a finished picture carries.
+//! The stages after the request: plan → pipeline → encode, for every frame of a product.
 
-use crate::pipeline::{Cancelled, Work};
-use crate::plan::Plan;
-use crate::{encode, pipeline};
-use bytes::Bytes;
+use super::product::{FileTag, Product, Rendered};
+use super::{Engine, JobError};
+use crate::encode::{self, Animation, Zip};
+use crate::pipeline::{Cancelled, Frame, Work};
+use crate::plan::{self, FrameRequest, Output, Plan, PlanError, QueryFault};
+use crate::scene::Scene;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Draws a plan and encodes the picture.
-pub type Draw = dyn Fn(&Plan, Format, &Work<'_>) -> Result<Picture, Cancelled> + Send + Sync;
+/// Draws a plan.
+pub type Draw = dyn Fn(&Plan, &Work<'_>) -> Result<Frame, Cancelled> + Send + Sync;
 
-/// How a picture is encoded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// PNG.
-    Png,
+/// A whole turn of a turntable, in hundredths of a second: slow enough to look at a model, and 36 frames
+/// still flow.
+const TURN_CS: u32 = 250;
+
+/// The shortest time that browsers show a frame of a GIF; what is below counts as ten times that.
+const SHORTEST_DELAY_CS: u32 = 2;
+
+/// Makes a product, one frame after another.
+pub(super) fn make(
+    engine: &Engine,
+    scene: &Arc<Scene>,
+    request: &FrameRequest,
+    product: &Product,
+    work: Work<'_>,
+) -> Result<Rendered, JobError> {
+    let requests = product.requests(scene, request, &engine.limits)?;
+    let mut making = Making::new(engine, scene, product, work);
+    let bytes = match product {
+        Product::Still(format) => {
+            let frame = making.frame(&requests[0])?;
+            encode::still(&frame, *format, &work)?
+        }
+        Product::Turntable { frames, format: Animation::Apng } => {
+            encode::apng(requests.iter().map(|side| making.frame(side)), *frames, delay_cs(*frames))?
+        }
+        Product::Turntable { frames, format: Animation::Gif } => {
+            let sides: Vec<Frame> =
+                requests.iter().map(|side| making.frame(side)).collect::<Result<_, JobError>>()?;
+            encode::gif(&sides, delay_cs(*frames), &work)?
+        }
+        Product::Archive { outputs } => making.archive(&requests, outputs)?,
+    };
+    Ok(making.finish(bytes, product.content_type()))
 }
 
-impl Format {
-    /// Its media type.
-    #[must_use]
-    pub fn content_type(self) -> &'static str {
-        match self {
-            Self::Png => "image/png",
+/// How long each of `frames` is shown.
+fn delay_cs(frames: u32) -> u16 {
+    let delay = (TURN_CS + frames / 2) / frames.max(1);
+    u16::try_from(delay.max(SHORTEST_DELAY_CS)).expect("at most a whole turn")
+}
+
+/// A product in the making: what it is drawn with, and what it has cost so far.
+struct Making<'a> {
+    engine: &'a Engine,
+    scene: &'a Arc<Scene>,
+    work: Work<'a>,
+    began: Instant,
+    planning: Duration,
+    drawing: Duration,
+    size: [u32; 2],
+    depth_range: Option<[f64; 2]>,
+    tag: FileTag,
+    passes: Vec<(&'static str, f64)>,
+    stats: Vec<(&'static str, u64)>,
+}
+
+impl<'a> Making<'a> {
+    fn new(engine: &'a Engine, scene: &'a Arc<Scene>, product: &Product, work: Work<'a>) -> Self {
+        Self {
+            engine,
+            scene,
+            work,
+            began: Instant::now(),
+            planning: Duration::ZERO,
+            drawing: Duration::ZERO,
+            size: [0; 2],
+            depth_range: None,
+            tag: FileTag::new(product),
+            passes: Vec::new(),
+            stats: Vec::new(),
         }
     }
-}
 
-/// What the drawing step gives.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Picture {
-    /// The encoded file.
-    pub bytes: Vec<u8>,
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Distances that the two ends of a depth picture stand for.
-    pub depth_range: Option<[f64; 2]>,
-    /// Counts, by the names of `Render-Stats`.
-    pub stats: Vec<(&'static str, u64)>,
-    /// Milliseconds by pass, in the order of the passes; one that did not run is absent.
-    pub timings: Vec<(&'static str, f64)>,
-}
+    /// Plans and draws one frame.
+    fn frame(&mut self, request: &FrameRequest) -> Result<Frame, JobError> {
+        let plan = self.plan(request)?;
+        self.draw(&plan)
+    }
 
-/// A finished picture and all that its reply says about it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rendered {
-    /// The encoded file.
-    pub bytes: Bytes,
-    /// Its media type.
-    pub content_type: &'static str,
-    /// Strong; of the picture's inputs and the version alone.
-    pub etag: String,
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Distances that the two ends of a depth picture stand for.
-    pub depth_range: Option<[f64; 2]>,
-    /// Counts, by the names of `Render-Stats`.
-    pub stats: Vec<(&'static str, u64)>,
-    /// Milliseconds: `queue` if it waited in one, `plan`, the passes, `encode`, `total`.
-    pub timings: Vec<(&'static str, f64)>,
-}
+    fn plan(&mut self, request: &FrameRequest) -> Result<Plan, JobError> {
+        let began = Instant::now();
+        let plan = self.engine.plan(self.scene, request)?;
+        self.planning += began.elapsed();
+        self.tag.add(&plan);
+        self.size = [plan.view.width, plan.view.height];
+        self.take_depth_range(&plan)?;
+        Ok(plan)
+    }
 
-impl Rendered {
-    pub(super) fn new(
-        picture: Picture,
-        etag: String,
-        format: Format,
-        planned: Duration,
-        total: Duration,
-    ) -> Self {
-        let mut timings = vec![("plan", milliseconds(planned))];
-        timings.extend(picture.timings);
-        timings.push(("total", milliseconds(total)));
-        Self {
-            bytes: picture.bytes.into(),
-            content_type: format.content_type(),
-            etag,
-            width: picture.width,
-            height: picture.height,
-            depth_range: picture.depth_range,
-            stats: picture.stats,
+    /// A file has one range of depth, or its values could not be compared.
+    fn take_depth_range(&mut self, plan: &Plan) -> Result<(), PlanError> {
+        if let (Some(before), Some(now)) = (self.depth_range, plan.depth_range)
+            && before != now
+        {
+            let detail = "must be given for a turntable of depth, here or in the scene's camera: \
+                          without it every side has a range of its own";
+            return Err(PlanError::Query(vec![QueryFault::new("far", detail)]));
+        }
+        self.depth_range = self.depth_range.or(plan.depth_range);
+        Ok(())
+    }
+
+    fn draw(&mut self, plan: &Plan) -> Result<Frame, JobError> {
+        let began = Instant::now();
+        let frame = (self.engine.draw)(plan, &self.work)?;
+        self.drawing += began.elapsed();
+        frame.timings.iter().for_each(|(pass, ms)| *entry(&mut self.passes, pass) += ms);
+        frame.stats.entries().iter().for_each(|(name, count)| *entry(&mut self.stats, name) += count);
+        Ok(frame)
+    }
+
+    /// Pictures of one frame under the names of their outputs, and `frame.json`.
+    fn archive(&mut self, requests: &[FrameRequest], outputs: &[Output]) -> Result<Vec<u8>, JobError> {
+        let (plan, frames) = self.frames_of_outputs(requests)?;
+        let mut archive = Zip::default();
+        for (frame, output) in frames.iter().zip(outputs) {
+            archive.add(&format!("{}.png", output.word()), &encode::png(frame));
+        }
+        let camera = plan::camera(self.scene, &requests[0], plan.view.width, plan.view.height)?;
+        archive.add("frame.json", &encode::frame_json(&plan, &camera, outputs, self.depth_range));
+        Ok(archive.finish())
+    }
+
+    /// The same frame for each of its outputs, and the plan of the first.
+    fn frames_of_outputs(&mut self, requests: &[FrameRequest]) -> Result<(Plan, Vec<Frame>), JobError> {
+        let plan = self.plan(&requests[0])?;
+        let mut frames = vec![self.draw(&plan)?];
+        for request in &requests[1..] {
+            frames.push(self.frame(request)?);
+        }
+        Ok((plan, frames))
+    }
+
+    /// The finished product. What was neither planning nor drawing was encoding.
+    fn finish(self, bytes: Vec<u8>, content_type: &'static str) -> Rendered {
+        let total = self.began.elapsed();
+        let encoding = total.saturating_sub(self.planning).saturating_sub(self.drawing);
+        let mut timings = vec![("plan", milliseconds(self.planning))];
+        timings.extend(self.passes);
+        timings.extend([("encode", milliseconds(encoding)), ("total", milliseconds(total))]);
+        Rendered {
+            bytes: bytes.into(),
+            content_type,
+            etag: self.tag.finish(),
+            width: self.size[0],
+            height: self.size[1],
+            depth_range: self.depth_range,
+            stats: self.stats,
             timings,
         }
     }
-
-    /// Puts the time in the queue in front, and into the total.
-    pub(super) fn add_wait(&mut self, waited: Duration) {
-        let waited = milliseconds(waited);
-        for (_, total) in self.timings.iter_mut().filter(|(name, _)| *name == "total") {
-            *total += waited;
-        }
-        self.timings.insert(0, ("queue", waited));
-    }
-
-    /// Milliseconds of `pass`, if it ran.
-    #[must_use]
-    pub fn timing(&self, pass: &str) -> Option<f64> {
-        self.timings.iter().find(|(name, _)| *name == pass).map(|(_, time)| *time)
-    }
 }
 
-/// The drawing step itself.
-pub(super) fn picture(plan: &Plan, format: Format, work: &Work<'_>) -> Result<Picture, Cancelled> {
-    let frame = pipeline::render(plan, work)?;
-    let started = Instant::now();
-    let bytes = match format {
-        Format::Png => encode::png(&frame),
-    };
-    let mut timings = frame.timings;
-    timings.push("encode", milliseconds(started.elapsed()));
-    Ok(Picture {
-        bytes,
-        width: frame.width,
-        height: frame.height,
-        depth_range: frame.depth_range,
-        stats: frame.stats.entries().to_vec(),
-        timings: timings.iter().collect(),
-    })
+/// The value of `name`, a new one at the end if there is none.
+fn entry<'a, T: Default>(entries: &'a mut Vec<(&'static str, T)>, name: &'static str) -> &'a mut T {
+    let at = entries.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
+        entries.push((name, T::default()));
+        entries.len() - 1
+    });
+    &mut entries[at].1
 }
 
-fn milliseconds(time: Duration) -> f64 {
+pub(super) fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turn_takes_two_and_a_half_seconds_or_what_browsers_need() {
+        assert_eq!(delay_cs(1), 250);
+        assert_eq!(delay_cs(36), 7);
+        assert_eq!(delay_cs(100), 3);
+        assert_eq!(delay_cs(360), 2);
+    }
 }

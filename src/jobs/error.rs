@@ -1,5 +1,6 @@
 //! Why a job gave no picture.
 
+use crate::encode::Unfit;
 use crate::pipeline::Cancelled;
 use crate::plan::PlanError;
 use std::time::Duration;
@@ -10,6 +11,9 @@ pub enum JobError {
     /// The request does not fit the scene or the limits.
     #[error("the frame cannot be planned")]
     Plan(PlanError),
+    /// The file's format cannot hold what the request asks for.
+    #[error(transparent)]
+    Unfit(#[from] Unfit),
     /// As many jobs wait as may.
     #[error("the render queue is full ({0} frames wait)")]
     Full(usize),

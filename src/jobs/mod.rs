@@ -1,27 +1,32 @@
 //! The bridge between two worlds: tokio does I/O, rayon does pixels.
 //!
-//! In: a scene and a [`FrameRequest`]. Out: a finished picture, or why there is none. A job waits in a
+//! In: a scene, a [`FrameRequest`] and the [`Product`] to make of it. Out: a finished file, or why there
+//! is none. A job waits in a
 //! bounded [`Queue`], then runs on a thread of its own that drives the shared pool; its deadline and
 //! the caller that goes away both set the flag that the tile loop reads.
 
 mod cancel;
 mod draw;
 mod error;
+mod product;
 mod queue;
 
+pub use crate::encode::{Animation, Format};
 pub(crate) use cancel::CancelOnDrop;
-pub use draw::{Draw, Format, Picture, Rendered};
+pub use draw::Draw;
 pub use error::JobError;
+pub use product::{Product, Rendered};
 pub use queue::{Queue, QueueDepth};
 
 use crate::limits::Limits;
-use crate::pipeline::{Hit, Work};
+use crate::pipeline::{self, Hit, Work};
 use crate::plan::Output;
 use crate::plan::request::{Elide, QueryFault};
 use crate::plan::{FrameRequest, Plan, PlanError};
 use crate::scene::Scene;
 use crate::settings::{Machine, Settings, Simd};
 use fearless_simd::Level;
+use product::FileTag;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -51,7 +56,7 @@ impl Renderer {
     /// # Errors
     /// When the system refuses the pool's threads.
     pub fn new(settings: &Settings) -> std::io::Result<Self> {
-        Self::with_draw(settings, Box::new(draw::picture))
+        Self::with_draw(settings, Box::new(pipeline::render))
     }
 
     /// A renderer that draws with `draw` in the pipeline's place: a test's slow, panicking or
@@ -85,7 +90,7 @@ impl Renderer {
         self.engine.pool.current_num_threads()
     }
 
-    /// Draws one frame when its turn comes.
+    /// Makes a file of `request` when its turn comes. Each of its frames has the deadline's time.
     ///
     /// # Errors
     /// See [`JobError`].
@@ -93,10 +98,13 @@ impl Renderer {
         &self,
         scene: Arc<Scene>,
         request: FrameRequest,
-        format: Format,
+        product: impl Into<Product>,
     ) -> Result<Rendered, JobError> {
-        let (mut rendered, waited) =
-            self.run(move |engine, cancel| engine.render(&scene, &request, format, cancel)).await?;
+        let product = product.into();
+        let deadline = self.deadline.saturating_mul(product.frame_count());
+        let task =
+            move |engine: &Engine, cancel: &AtomicBool| engine.render(&scene, &request, product, cancel);
+        let (mut rendered, waited) = self.run(deadline, task).await?;
         rendered.add_wait(waited);
         Ok(rendered)
     }
@@ -112,45 +120,53 @@ impl Renderer {
         x: u32,
         y: u32,
     ) -> Result<Option<Hit>, JobError> {
-        self.run(move |engine, cancel| engine.pick(&scene, &request, x, y, cancel))
-            .await
-            .map(|(pick, _)| pick)
+        let task = move |engine: &Engine, cancel: &AtomicBool| engine.pick(&scene, &request, x, y, cancel);
+        self.run(self.deadline, task).await.map(|(pick, _)| pick)
     }
 
     /// The ETag that [`Renderer::render`] would answer with, without drawing and without a turn in
     /// the queue.
     ///
     /// # Errors
-    /// [`JobError::Plan`] for a request that can't be planned, [`JobError::Panicked`].
-    pub async fn etag(&self, scene: Arc<Scene>, request: FrameRequest) -> Result<String, JobError> {
+    /// [`JobError::Plan`] and [`JobError::Unfit`] for a request that can't be met,
+    /// [`JobError::Panicked`].
+    pub async fn etag(
+        &self,
+        scene: Arc<Scene>,
+        request: FrameRequest,
+        product: impl Into<Product>,
+    ) -> Result<String, JobError> {
         let engine = Arc::clone(&self.engine);
-        tokio::task::spawn_blocking(move || caught(|| Ok(engine.plan(&scene, &request)?.etag())))
+        let product = product.into();
+        tokio::task::spawn_blocking(move || caught(|| engine.etag(&scene, &request, product)))
             .await
             .map_err(|_| JobError::Panicked)?
     }
 
-    /// Draws one frame on this thread, now: the same bytes without queue and deadline.
+    /// Makes a file on this thread, now: the same bytes without queue and deadline.
     ///
     /// # Errors
-    /// [`JobError::Plan`] and [`JobError::Panicked`].
+    /// [`JobError::Plan`], [`JobError::Unfit`] and [`JobError::Panicked`].
     pub fn render_now(
         &self,
         scene: &Arc<Scene>,
         request: &FrameRequest,
-        format: Format,
+        product: impl Into<Product>,
     ) -> Result<Rendered, JobError> {
-        caught(|| self.engine.render(scene, request, format, &AtomicBool::new(false)))
+        let product = product.into();
+        caught(|| self.engine.render(scene, request, product, &AtomicBool::new(false)))
     }
 
     /// Runs `task` on a blocking thread when its turn comes. Dropping the returned future cancels it.
     /// The turn ends with the task itself, not with the caller's patience.
     async fn run<T: Send + 'static>(
         &self,
+        deadline: Duration,
         task: impl FnOnce(&Engine, &AtomicBool) -> Result<T, JobError> + Send + 'static,
     ) -> Result<(T, Duration), JobError> {
         let arrived = Instant::now();
-        let late = || JobError::Deadline(self.deadline);
-        let end = (arrived + self.deadline).into();
+        let late = || JobError::Deadline(deadline);
+        let end = (arrived + deadline).into();
         let turn = timeout_at(end, self.queue.turn()).await.map_err(|_| late())??;
         let waited = arrived.elapsed();
 
@@ -194,14 +210,19 @@ impl Engine {
         &self,
         scene: &Arc<Scene>,
         request: &FrameRequest,
-        format: Format,
+        product: Product,
         cancel: &AtomicBool,
     ) -> Result<Rendered, JobError> {
-        let started = Instant::now();
-        let plan = self.plan(scene, request)?;
-        let planned = started.elapsed();
-        let picture = (self.draw)(&plan, format, &self.work(cancel))?;
-        Ok(Rendered::new(picture, plan.etag(), format, planned, started.elapsed()))
+        draw::make(self, scene, request, &product.settled(request), self.work(cancel))
+    }
+
+    fn etag(&self, scene: &Arc<Scene>, request: &FrameRequest, product: Product) -> Result<String, JobError> {
+        let product = product.settled(request);
+        let mut tag = FileTag::new(&product);
+        for request in product.requests(scene, request, &self.limits)? {
+            tag.add(&self.plan(scene, &request)?);
+        }
+        Ok(tag.finish())
     }
 
     fn pick(

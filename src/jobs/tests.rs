@@ -1,4 +1,5 @@
 use super::*;
+use crate::pipeline::{Frame, Pixels};
 use crate::scene::{ModelOptions, NewScene, UpAxis};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -35,13 +36,25 @@ fn renderer(settings: &Settings, draw: Box<Draw>) -> Renderer {
 /// Draws until it is cancelled and says so.
 fn endless(ended: mpsc::Sender<()>) -> Box<Draw> {
     let ended = std::sync::Mutex::new(ended);
-    Box::new(move |_, _, work| {
+    Box::new(move |_, work| {
         while !work.cancel.load(Ordering::Relaxed) {
             sleep(TICK);
         }
         ended.lock().expect("one sender at a time").send(()).expect("a listening test");
         Err(crate::pipeline::Cancelled)
     })
+}
+
+/// One black pixel.
+fn frame() -> Frame {
+    Frame {
+        width: 1,
+        height: 1,
+        pixels: Pixels::Rgba8 { pixels: vec![[0, 0, 0, 255]], opaque: true },
+        stats: pipeline::Stats::default(),
+        timings: pipeline::Timings::default(),
+        depth_range: None,
+    }
 }
 
 async fn ask(renderer: &Renderer) -> Result<Rendered, JobError> {
@@ -100,9 +113,9 @@ async fn one_more_than_the_queue_holds_is_refused_at_once() {
 async fn a_closed_queue_refuses_but_finishes_what_it_has() {
     let (go, gate) = mpsc::channel::<()>();
     let gate = std::sync::Mutex::new(gate);
-    let draw: Box<Draw> = Box::new(move |_, _, _| {
+    let draw: Box<Draw> = Box::new(move |_, _| {
         gate.lock().expect("one job at a time").recv_timeout(PATIENCE).expect("let go");
-        Ok(Picture::default())
+        Ok(frame())
     });
     let renderer = renderer(&settings(1, PATIENCE), draw);
     let callers: Vec<_> = (0..2)
@@ -124,9 +137,9 @@ async fn a_closed_queue_refuses_but_finishes_what_it_has() {
 #[tokio::test]
 async fn a_panic_is_an_error_and_the_next_frame_is_drawn() {
     let calls = AtomicUsize::new(0);
-    let draw: Box<Draw> = Box::new(move |_, _, work| {
+    let draw: Box<Draw> = Box::new(move |_, work| {
         assert!(calls.fetch_add(1, Ordering::Relaxed) > 0, "the first frame panics");
-        Ok(work.pool.install(Picture::default))
+        Ok(work.pool.install(frame))
     });
     let renderer = renderer(&settings(0, PATIENCE), draw);
     assert!(matches!(ask(&renderer).await, Err(JobError::Panicked)));
@@ -136,7 +149,7 @@ async fn a_panic_is_an_error_and_the_next_frame_is_drawn() {
 
 #[tokio::test]
 async fn a_panic_on_the_pool_is_an_error_too() {
-    let draw: Box<Draw> = Box::new(|_, _, work| work.pool.install(|| panic!("on the pool")));
+    let draw: Box<Draw> = Box::new(|_, work| work.pool.install(|| panic!("on the pool")));
     let renderer = renderer(&settings(0, PATIENCE), draw);
     assert!(matches!(ask(&renderer).await, Err(JobError::Panicked)));
 }
@@ -150,6 +163,8 @@ async fn the_etag_needs_no_turn() {
         async move { ask(&renderer).await.map(|_| ()) }
     });
     until(|| renderer.queue().depth().running == 1).await;
-    assert!(renderer.etag(scene(), FrameRequest::default()).await.expect("an ETag").starts_with('"'));
+    assert!(
+        renderer.etag(scene(), FrameRequest::default(), Format::Png).await.expect("an ETag").starts_with('"')
+    );
     caller.abort();
 }

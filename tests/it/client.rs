@@ -7,7 +7,7 @@ use bytes::Bytes;
 use http_body_util::BodyExt;
 use rasterd::http::{App, router};
 use rasterd::jobs::{Draw, Renderer};
-use rasterd::pipeline::Cancelled;
+use rasterd::pipeline::{Cancelled, Frame, Pixels, Stats, Timings};
 use rasterd::settings::{Machine, Settings};
 use serde_json::Value;
 use std::num::NonZeroUsize;
@@ -163,10 +163,22 @@ pub struct Counts {
     pub cancelled: AtomicUsize,
 }
 
+/// A picture that no drawing has made.
+pub fn still(width: u32, height: u32, pixel: impl FnMut(usize) -> [u8; 4]) -> Frame {
+    Frame {
+        width,
+        height,
+        pixels: Pixels::Rgba8 { pixels: (0..(width * height) as usize).map(pixel).collect(), opaque: false },
+        stats: Stats::default(),
+        timings: Timings::default(),
+        depth_range: None,
+    }
+}
+
 /// A drawing step that goes on until it is cancelled.
 pub fn endless(counts: &Arc<Counts>) -> Box<Draw> {
     let counts = Arc::clone(counts);
-    Box::new(move |_, _, work| {
+    Box::new(move |_, work| {
         counts.begun.fetch_add(1, Ordering::SeqCst);
         while !work.cancel.load(Ordering::Relaxed) {
             std::thread::sleep(Duration::from_millis(2));

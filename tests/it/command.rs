@@ -66,6 +66,30 @@ async fn a_document_of_the_gallery_is_drawn_with_what_lies_beside_it() {
     assert_eq!(output.stdout, client.call(Method::POST, path, "", &[], Body::empty()).await.body);
 }
 
+#[tokio::test]
+async fn the_ending_says_what_is_written() {
+    let folder = Folder::new("endings", &[("scene.json", &triangle().to_string())]);
+    let client = Client::new();
+    client.put_triangle().await;
+    for (file, flags, path) in [
+        ("a.JPEG", &["--quality", "30"][..], "frame.jpg?quality=30"),
+        ("a.webp", &[], "frame.webp"),
+        ("a.exr", &[], "frame.exr"),
+        ("a.hdr", &[], "frame.hdr"),
+        ("a.gif", &["--frames", "3", "--orbit", "0,30"], "turntable.gif?frames=3&orbit=0,30"),
+        ("a.apng", &["--frames", "2"], "turntable.png?frames=2"),
+        ("a.zip", &["--outputs", "color,depth"], "frame.zip?outputs=color,depth"),
+    ] {
+        let output = render(&folder, &[&["scene.json", "-o", file], flags].concat());
+        assert!(output.status.success(), "{file}: {}", error(&output));
+        let sent = client.get(&format!("/scenes/t/{path}")).await;
+        assert_eq!(sent.status, 200, "{path}");
+        assert!(std::fs::read(folder.0.join(file)).expect("a file") == sent.body, "{file}");
+    }
+    let unknown = render(&folder, &["scene.json", "-o", "a.bmp"]);
+    assert!(error(&unknown).contains(".png, .jpg, .webp, .exr, .hdr"), "{}", error(&unknown));
+}
+
 #[test]
 fn bad_input_exits_1_with_the_servers_words() {
     let folder = Folder::new("bad", &[("broken.json", "{"), ("wrong.json", "{\"lamps\": {}, \"cam\": {}}")]);
@@ -78,7 +102,7 @@ fn bad_input_exits_1_with_the_servers_words() {
     assert!(run(&["wrong.json", "-o", "-"]).contains("/lamps: "));
     assert!(run(&["none.obj", "-o", "-"]).contains("none.obj"));
     assert!(run(&["wrong.json", "-o", "-", "--width", "0"]).contains("width: must lie in"));
-    assert!(run(&["wrong.json", "-o", "x.jpg"]).contains(".png"));
+    assert!(run(&["wrong.json", "-o", "x.gif", "--frames", "0"]).contains("frames: must lie in"));
 }
 
 #[test]
@@ -100,6 +124,8 @@ fn wrong_usage_exits_2() {
         &["paint"],
         &["render", "a.obj", "-o", "-", "--simd", "mmx"],
         &["render", "a.obj", "-o", "-", "--elide", "shadow"],
+        &["render", "a.obj", "-o", "a.bmp"],
+        &["render", "a.obj", "-o", "a.png", "--frames", "3"],
     ] {
         let output = rasterd().args(arguments).output().expect("a run");
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", error(&output));

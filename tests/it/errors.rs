@@ -201,7 +201,7 @@ async fn status_431_for_a_head_that_is_too_large() {
 
 #[tokio::test]
 async fn status_500_for_a_panic_and_the_server_goes_on() {
-    let client = Client::drawing_with(settings(), Box::new(|_, _, _| panic!("a test's panic")));
+    let client = Client::drawing_with(settings(), Box::new(|_, _| panic!("a test's panic")));
     client.put_triangle().await;
     for _ in 0..3 {
         let problem = client.get("/scenes/t/frame.png").await.problem(500);

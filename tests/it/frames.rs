@@ -1,7 +1,6 @@
 //! `/scenes/{id}/frame.png`.
 
 use crate::client::{Client, Counts, endless, settings, triangle};
-use axum::body::Body;
 use axum::http::Method;
 use serde_json::json;
 use std::sync::Arc;
@@ -99,16 +98,4 @@ async fn accept_decides_whether_a_picture_is_wanted() {
         client.get_with("/scenes/t/frame.png", &[("accept", accept)]).await.png_size();
     }
     client.get_with("/scenes/t/frame.png", &[("accept", "application/json")]).await.problem(406);
-}
-
-#[tokio::test]
-async fn formats_of_later_versions_are_406_and_others_404() {
-    let client = Client::new();
-    client.put_triangle().await;
-    for format in ["jpg", "webp", "exr", "hdr", "zip"] {
-        let problem = client.get(&format!("/scenes/t/frame.{format}")).await.problem(406);
-        assert!(problem["detail"].as_str().is_some_and(|detail| detail.contains(".png")));
-    }
-    client.call(Method::POST, "/render.jpg", "", &[], Body::empty()).await.problem(406);
-    client.get("/scenes/t/frame.bmp").await.problem(404);
 }

@@ -1,5 +1,6 @@
 //! Public behaviour.
 
+mod archive;
 mod box_on_floor;
 mod client;
 mod closed_form;
@@ -8,6 +9,7 @@ mod draw;
 mod draws;
 mod errors;
 mod files;
+mod formats;
 mod frames;
 mod gallery;
 mod guard;
@@ -20,4 +22,5 @@ mod render_once;
 mod scenes;
 mod service;
 mod socket;
+mod turntables;
 mod unchanged;

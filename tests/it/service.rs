@@ -67,13 +67,22 @@ async fn the_description_has_every_route_with_its_statuses() {
         ("/healthz", "get"),
         ("/openapi.json", "get"),
         ("/readyz", "get"),
+        ("/render.jpg", "post"),
         ("/render.png", "post"),
+        ("/render.webp", "post"),
         ("/scenes", "get post"),
         ("/scenes/{id}", "get put patch delete"),
         ("/scenes/{id}/files", "get"),
         ("/scenes/{id}/files/{name}", "get put delete"),
+        ("/scenes/{id}/frame.exr", "get post"),
+        ("/scenes/{id}/frame.hdr", "get post"),
+        ("/scenes/{id}/frame.jpg", "get post"),
         ("/scenes/{id}/frame.png", "get post"),
+        ("/scenes/{id}/frame.webp", "get post"),
+        ("/scenes/{id}/frame.zip", "get post"),
         ("/scenes/{id}/pick", "get"),
+        ("/scenes/{id}/turntable.gif", "get"),
+        ("/scenes/{id}/turntable.png", "get"),
         ("/version", "get"),
     ] {
         for method in methods.split(' ') {
@@ -84,10 +93,13 @@ async fn the_description_has_every_route_with_its_statuses() {
             assert!(operation["responses"]["500"].is_object(), "{method} {path}");
         }
     }
-    let frame = &api["paths"]["/scenes/{id}/frame.png"]["get"]["responses"];
-    for status in ["200", "304", "403", "404", "406", "413", "422", "500", "503", "504"] {
-        assert!(frame[status].is_object(), "{status}");
+    for picture in ["frame.png", "frame.exr", "frame.zip", "turntable.gif"] {
+        let responses = &api["paths"][format!("/scenes/{{id}}/{picture}")]["get"]["responses"];
+        for status in ["200", "304", "403", "404", "406", "413", "422", "500", "503", "504"] {
+            assert!(responses[status].is_object(), "{picture}: {status}");
+        }
     }
+    assert!(!api.to_string().contains("{format}"));
 }
 
 #[tokio::test]

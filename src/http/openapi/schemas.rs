@@ -1,6 +1,6 @@
 //! Schemas that the annotations can't say: words, tuples in text, bodies by media type.
 
-use crate::plan::FrameRequest;
+use crate::plan::{FrameRequest, Output};
 use crate::scene::gallery;
 use serde_json::{Value, json};
 
@@ -25,6 +25,7 @@ fn of_parameter(name: &str) -> Option<Value> {
     match name {
         "samples" => Some(json!({ "type": "integer", "enum": [1, 2, 4, 8, 16] })),
         "output" | "shading" => Some(words(&FrameRequest::words(name))),
+        "outputs" => Some(listed(&Output::all())),
         "up" => Some(words(&["y", "z"])),
         "from" => {
             let names: Vec<&str> = gallery::pieces().iter().map(|piece| piece.name).collect();
@@ -41,6 +42,12 @@ fn of_parameter(name: &str) -> Option<Value> {
 
 fn words(words: &[&str]) -> Value {
     json!({ "type": "string", "enum": words })
+}
+
+/// Some of `outputs` with commas between.
+fn listed(outputs: &[Output]) -> Value {
+    let word = format!("({})", outputs.iter().map(|output| output.word()).collect::<Vec<_>>().join("|"));
+    json!({ "type": "string", "pattern": format!("^{word}(,{word})*$") })
 }
 
 /// A number and as many more as `times` says, with commas between: in form all that the query's reader

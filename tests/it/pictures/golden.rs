@@ -6,10 +6,10 @@
 
 mod relief;
 
-use crate::draw::{file, frame, output, png, samples, scene_with};
+use crate::draw::{file, frame, output, png, samples, scene_with, work};
 use rasterd::encode;
 use rasterd::limits::Limits;
-use rasterd::pipeline::Frame;
+use rasterd::pipeline::{Frame, Pixels, Stats, Timings};
 use rasterd::plan::{FrameRequest, Output};
 use rasterd::scene::{Files, gallery};
 use serde_json::{Value, json};
@@ -70,6 +70,36 @@ pub fn assert_golden(name: &str, frame: &Frame) {
         write(&beside.with_extension("actual.png"), &actual);
         write(&beside.with_extension("difference.png"), &difference(&decoded, &expected));
         panic!("{name} differs: see {}", beside.with_extension("difference.png").display());
+    }
+}
+
+/// Compares the bytes of a file with `tests/golden/<name>`.
+#[track_caller]
+fn assert_golden_file(name: &str, actual: &[u8]) {
+    let golden = root().join("tests/golden").join(name);
+    if std::env::var_os("RASTERD_BLESS").is_some_and(|value| value == "1") {
+        write(&golden, actual);
+        return;
+    }
+    let expected = std::fs::read(&golden).unwrap_or_else(|error| panic!("{}: {error}", golden.display()));
+    if actual != expected {
+        let beside = root().join("target/golden").join(name);
+        write(&beside, actual);
+        panic!("{name} differs: see {}", beside.display());
+    }
+}
+
+/// A golden picture as a frame.
+fn stored(name: &str) -> Frame {
+    let file = std::fs::read(root().join("tests/golden").join(name)).expect("a golden picture");
+    let picture = image::load_from_memory(&file).expect("a PNG").into_rgba8();
+    Frame {
+        width: picture.width(),
+        height: picture.height(),
+        pixels: Pixels::Rgba8 { pixels: picture.pixels().map(|pixel| pixel.0).collect(), opaque: true },
+        stats: Stats::default(),
+        timings: Timings::default(),
+        depth_range: None,
     }
 }
 
@@ -332,4 +362,18 @@ fn golden_gallery() {
         let scene = piece.to_scene().compile(&Limits::default()).expect("a scene");
         assert_golden(&format!("gallery/{}", piece.name), &frame(&Arc::new(scene), &request));
     }
+}
+
+/// What is lost is lost in the same way on every machine.
+#[test]
+fn lossy_files_have_the_same_bytes_everywhere() {
+    let ball = stored("shade/a_ball_in_blinn_phong.png");
+    for quality in [30, 80, 95] {
+        let jpeg = encode::jpeg(&ball, quality, &work()).expect("nobody cancels");
+        assert_golden_file(&format!("encode/a_ball_at_quality_{quality}.jpg"), &jpeg);
+    }
+    let balls =
+        ["blinn_phong", "lambert", "normal"].map(|name| stored(&format!("shade/a_ball_in_{name}.png")));
+    let gif = encode::gif(&balls, 50, &work()).expect("nobody cancels");
+    assert_golden_file("encode/three_balls_share_a_palette.gif", &gif);
 }

@@ -1,0 +1,210 @@
+//! What a job makes, and what a finished one carries.
+
+use super::JobError;
+use super::draw::milliseconds;
+use crate::encode::{Animation, Format};
+use crate::limits::{Limits, MAX_TURNTABLE_FRAMES};
+use crate::plan::request::Query;
+use crate::plan::{FrameRequest, Output, Plan, PlanError};
+use crate::scene::Scene;
+use bytes::Bytes;
+use std::time::Duration;
+
+/// What a client wants to have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Product {
+    /// One picture.
+    Still(Format),
+    /// A turn about the target, drawn from `frames` sides.
+    Turntable {
+        /// How many, 1–[`crate::limits::MAX_TURNTABLE_FRAMES`].
+        frames: u32,
+        /// Of the file.
+        format: Animation,
+    },
+    /// A ZIP archive of several pictures of one frame, with a description.
+    Archive {
+        /// What they show.
+        outputs: Vec<Output>,
+    },
+}
+
+impl From<Format> for Product {
+    fn from(format: Format) -> Self {
+        Self::Still(format)
+    }
+}
+
+/// Frames of a turntable where no number is asked for: ten degrees each.
+const DEFAULT_TURNTABLE_FRAMES: u32 = 36;
+
+impl Product {
+    /// A turntable, out of a query that may hold other parameters too: `frames`.
+    pub fn read_turntable(query: &mut Query, format: Animation) -> Self {
+        let frames = query.integer_in("frames", 1..=MAX_TURNTABLE_FRAMES);
+        Self::Turntable { frames: frames.unwrap_or(DEFAULT_TURNTABLE_FRAMES), format }
+    }
+
+    /// An archive, out of a query that may hold other parameters too: `outputs`, else all there are.
+    pub fn read_archive(query: &mut Query) -> Self {
+        if query.text("output").is_some() {
+            query.fault(
+                "output",
+                "is that of a single picture; an archive takes outputs, with commas between",
+            );
+        }
+        Self::Archive { outputs: query.parsed("outputs", Output::list).unwrap_or_else(Output::all) }
+    }
+
+    /// The file's media type.
+    #[must_use]
+    pub fn content_type(&self) -> &'static str {
+        match self {
+            Self::Still(format) => format.content_type(),
+            Self::Turntable { format, .. } => format.content_type(),
+            Self::Archive { .. } => "application/zip",
+        }
+    }
+
+    /// As `request` has it: of its quality.
+    pub(super) fn settled(self, request: &FrameRequest) -> Self {
+        match self {
+            Self::Still(format) => Self::Still(format.with_quality(request.quality)),
+            other => other,
+        }
+    }
+
+    /// Frames that are drawn for it.
+    pub(super) fn frame_count(&self) -> u32 {
+        match self {
+            Self::Still(_) => 1,
+            Self::Turntable { frames, .. } => *frames,
+            Self::Archive { outputs } => u32::try_from(outputs.len()).unwrap_or(u32::MAX),
+        }
+    }
+
+    /// What each of its frames asks for; at least one.
+    ///
+    /// # Errors
+    /// [`JobError::Unfit`] and [`JobError::Plan`].
+    pub(super) fn requests(
+        &self,
+        scene: &Scene,
+        request: &FrameRequest,
+        limits: &Limits,
+    ) -> Result<Vec<FrameRequest>, JobError> {
+        self.check_size(scene, request, limits)?;
+        match self {
+            Self::Still(format) => Ok(vec![showing(request, format.drawn_as(request.output)?)]),
+            Self::Turntable { frames, format } => {
+                format.check(request.output)?;
+                let side = |i: u32| request.turned(360.0 * f64::from(i) / f64::from(*frames));
+                Ok((0..*frames).map(side).collect())
+            }
+            Self::Archive { outputs } => Ok(outputs.iter().map(|output| showing(request, *output)).collect()),
+        }
+    }
+
+    /// Refuses more frames than fit the memory of one, which holds them all until they are a file.
+    fn check_size(&self, scene: &Scene, request: &FrameRequest, limits: &Limits) -> Result<(), PlanError> {
+        let held = match self {
+            Self::Still(_) => return Ok(()),
+            // Pixels and indices.
+            Self::Turntable { format: Animation::Gif, .. } => 5,
+            // Encoded as it comes, in the worst case as large as it was.
+            Self::Turntable { format: Animation::Apng, .. } => 4,
+            // Pixels and files.
+            Self::Archive { .. } => 8,
+        };
+        let side = |asked: Option<u32>, own: u32| u64::from(asked.unwrap_or(own));
+        let width = side(request.width, scene.render.width);
+        let height = side(request.height, scene.render.height);
+        let pixels = width.saturating_mul(height).saturating_mul(self.frame_count().into());
+        let bytes = pixels.saturating_mul(held);
+        if bytes <= limits.frame_bytes {
+            return Ok(());
+        }
+        Err(PlanError::TooLarge {
+            what: "memory of all frames in bytes".to_owned(),
+            limit: limits.frame_bytes,
+            value: bytes,
+            setting: Some("RASTERD_MAX_FRAME_BYTES"),
+        })
+    }
+
+    /// What tells its file from others of the same frames.
+    fn kind(&self) -> String {
+        match self {
+            Self::Still(format) => format.tag(),
+            Self::Turntable { format, .. } => format!("{format:?}"),
+            Self::Archive { .. } => "zip".to_owned(),
+        }
+    }
+}
+
+/// The same frame with another output.
+fn showing(request: &FrameRequest, output: Output) -> FrameRequest {
+    FrameRequest { output, ..request.clone() }
+}
+
+/// A finished file and all that its reply says about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// The file.
+    pub bytes: Bytes,
+    /// Its media type.
+    pub content_type: &'static str,
+    /// Strong; of the file's inputs and the version alone.
+    pub etag: String,
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Distances that the two ends of a depth picture stand for.
+    pub depth_range: Option<[f64; 2]>,
+    /// Counts, by the names of `Render-Stats`, of all frames together.
+    pub stats: Vec<(&'static str, u64)>,
+    /// Milliseconds: `queue` if it waited in one, `plan`, the passes of all frames together, `encode`,
+    /// `total`.
+    pub timings: Vec<(&'static str, f64)>,
+}
+
+impl Rendered {
+    /// Puts the time in the queue in front, and into the total.
+    pub(super) fn add_wait(&mut self, waited: Duration) {
+        let waited = milliseconds(waited);
+        for (_, total) in self.timings.iter_mut().filter(|(name, _)| *name == "total") {
+            *total += waited;
+        }
+        self.timings.insert(0, ("queue", waited));
+    }
+
+    /// Milliseconds of `pass`, if it ran.
+    #[must_use]
+    pub fn timing(&self, pass: &str) -> Option<f64> {
+        self.timings.iter().find(|(name, _)| *name == pass).map(|(_, time)| *time)
+    }
+}
+
+/// The ETag of a file in the making: of its kind, and of the tags of its frames' plans.
+#[derive(Debug)]
+pub(super) struct FileTag(blake3::Hasher);
+
+impl FileTag {
+    /// The tag of a product without frames yet.
+    pub(super) fn new(product: &Product) -> Self {
+        let mut hash = blake3::Hasher::new();
+        hash.update(product.kind().as_bytes());
+        Self(hash)
+    }
+
+    /// Takes in a frame.
+    pub(super) fn add(&mut self, plan: &Plan) {
+        self.0.update(plan.etag().as_bytes());
+    }
+
+    /// In quotes.
+    pub(super) fn finish(&self) -> String {
+        format!("\"{}\"", &self.0.finalize().to_hex()[..32])
+    }
+}
