@@ -105,7 +105,7 @@ fn weighted_mean<'a, S: Simd>(
         let weight = gaussian.weights[at];
         for i in 0..sum.len() {
             let difference = (before[i] + after[i]) - (centre[i] + centre[i]);
-            sum[i] = sum[i] + difference * weight;
+            sum[i] += difference * weight;
         }
     }
     [centre[0] + sum[0], centre[1] + sum[1], centre[2] + sum[2], centre[3] + sum[3]]

@@ -83,6 +83,6 @@ pub fn store<S: Simd>(strip: Strip<S>, to: &mut [f32]) {
 #[inline(always)]
 pub fn add_scaled<S: Simd>(sum: &mut Strip<S>, strip: Strip<S>, weight: f32) {
     for (sum, sample) in sum.iter_mut().zip(strip) {
-        *sum = *sum + sample * weight;
+        *sum += sample * weight;
     }
 }

@@ -40,7 +40,7 @@ impl RowPass for Sharpen<'_> {
                 for (column, across) in MASK.into_iter().enumerate() {
                     let around: Strip<S> = load(simd, &samples[column..]);
                     for i in 0..detail.len() {
-                        detail[i] = detail[i] + (centre[i] - around[i]) * (across * down);
+                        detail[i] += (centre[i] - around[i]) * (across * down);
                     }
                 }
             }
