@@ -30,5 +30,6 @@ mod relief;
 mod samples;
 mod shadows;
 mod shift;
+mod sky;
 mod stage;
 mod textures;

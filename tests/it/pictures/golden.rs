@@ -10,6 +10,7 @@ use crate::draw::{file, frame, output, png, samples, scene_with, work};
 use rasterd::encode;
 use rasterd::limits::Limits;
 use rasterd::pipeline::{Frame, Pixels, Stats, Timings};
+use rasterd::plan::request::BackgroundRequest;
 use rasterd::plan::{FrameRequest, Output};
 use rasterd::scene::{Files, gallery};
 use serde_json::{Value, json};
@@ -334,6 +335,67 @@ fn golden_post_with_neighbours() {
     };
     let tonemapped = json!([{ "type": "tonemap" }, { "type": "blur" }]);
     check_post("a_blurred_silhouette_fades_into_nothing", tonemapped, before_nothing);
+}
+
+/// A procedural sky with its sun at an elevation, over the still life.
+fn under_a_sky(elevation_deg: f64, turbidity: f64) -> Value {
+    let (sin, cos) = elevation_deg.to_radians().sin_cos();
+    let travels = json!([-0.45 * cos, -sin, 0.893 * cos]);
+    let mut document = still_life();
+    document["lights"]["sun"]["direction"] = travels;
+    document["environment"]["background"] = json!({ "type": "sky", "turbidity": turbidity });
+    document["camera"] = json!({ "position": [0.2, 0.9, 3.4], "target": [0.1, 1.15, 0], "fov_y_deg": 60 });
+    document["render"] = json!({ "width": 160, "height": 120, "samples": 4 });
+    document
+}
+
+#[test]
+fn golden_skies() {
+    check("sky/a_clear_noon", &under_a_sky(55.0, 2.5));
+    check("sky/a_low_sun", &under_a_sky(7.0, 3.0));
+    check("sky/dusk", &under_a_sky(-3.0, 3.0));
+}
+
+/// A face with its direction's colour, a frame of its own, and a white corner where s = t = 0.
+fn marked_face(face: usize) -> Vec<u8> {
+    let color = [[200, 60, 60], [90, 30, 30], [70, 180, 80], [30, 80, 40], [70, 90, 210], [30, 40, 95]][face];
+    png(32, 32, |x, y| {
+        let rim = x < 2 || y < 2 || x > 29 || y > 29;
+        let [r, g, b] = if x < 10 && y < 10 { [255; 3] } else { color };
+        if rim { [r / 2 + 60, g / 2 + 60, b / 2 + 60, 255] } else { [r, g, b, 255] }
+    })
+}
+
+/// Continents of noise are not needed to see where a panorama lies: a graticule, red to the right.
+fn graticule(x: u32, y: u32) -> [u8; 4] {
+    let part = |n: u32, of: u32| u8::try_from(30 + 200 * n / of).expect("below 256");
+    if x % 32 < 2 || y % 32 < 2 { [250, 250, 240, 255] } else { [part(x, 256), part(y, 128), 110, 255] }
+}
+
+#[test]
+fn golden_surroundings() {
+    let mut files = file("graticule.png", png(256, 128, graticule));
+    let mut faces = json!({});
+    for (face, name) in ["px", "nx", "py", "ny", "pz", "nz"].into_iter().enumerate() {
+        faces[name] = json!(name);
+        files.insert(name, marked_face(face).into()).expect("a sound name");
+    }
+    let document = json!({
+        "camera": { "position": [0, 0, 0], "target": [0.6, 0.4, -1], "fov_y_deg": 110 },
+        "environment": { "background": "cube", "backgrounds": {
+            "around": { "type": "equirect", "file": "graticule.png" },
+            "cube": { "type": "cubemap", "faces": faces },
+        } },
+        "lights": {},
+        "render": { "width": 128, "height": 96, "samples": 1 },
+    });
+    assert_golden("sky/a_cube_map", &draw(&document, &files, &FrameRequest::default()));
+    let background = Some(BackgroundRequest::Named("around".to_owned()));
+    let chosen = FrameRequest { background, ..FrameRequest::default() };
+    assert_golden("sky/a_panorama_chosen_by_query", &draw(&document, &files, &chosen));
+    let eye = Some(glam::DVec3::ZERO);
+    let up = FrameRequest { eye, target: Some(glam::DVec3::new(0.05, 1.0, -0.02)), ..chosen };
+    assert_golden("sky/the_pole_of_a_panorama", &draw(&document, &files, &up));
 }
 
 #[test]
