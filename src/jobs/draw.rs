@@ -9,8 +9,8 @@ use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Draws a plan.
-pub type Draw = dyn Fn(&Plan, &Work<'_>) -> Result<Frame, Cancelled> + Send + Sync;
+/// Draws a frame for each plan.
+pub type Draw = dyn Fn(&[Plan], &Work<'_>) -> Result<Vec<Frame>, Cancelled> + Send + Sync;
 
 /// A whole turn of a turntable, in hundredths of a second: slow enough to look at a model, and 36 frames
 /// still flow.
@@ -88,7 +88,8 @@ impl<'a> Making<'a> {
     /// Plans and draws one frame.
     fn frame(&mut self, request: &FrameRequest) -> Result<Frame, JobError> {
         let plan = self.plan(request)?;
-        self.draw(&plan)
+        let frames = self.draw(std::slice::from_ref(&plan))?;
+        Ok(frames.into_iter().next().expect("a frame for each plan"))
     }
 
     fn plan(&mut self, request: &FrameRequest) -> Result<Plan, JobError> {
@@ -114,35 +115,29 @@ impl<'a> Making<'a> {
         Ok(())
     }
 
-    fn draw(&mut self, plan: &Plan) -> Result<Frame, JobError> {
+    fn draw(&mut self, plans: &[Plan]) -> Result<Vec<Frame>, JobError> {
         let began = Instant::now();
-        let frame = (self.engine.draw)(plan, &self.work)?;
+        let frames = (self.engine.draw)(plans, &self.work)?;
         self.drawing += began.elapsed();
-        frame.timings.iter().for_each(|(pass, ms)| *entry(&mut self.passes, pass) += ms);
-        frame.stats.entries().iter().for_each(|(name, count)| *entry(&mut self.stats, name) += count);
-        Ok(frame)
+        for frame in &frames {
+            frame.timings.iter().for_each(|(pass, ms)| *entry(&mut self.passes, pass) += ms);
+            frame.stats.entries().iter().for_each(|(name, count)| *entry(&mut self.stats, name) += count);
+        }
+        Ok(frames)
     }
 
     /// Pictures of one frame under the names of their outputs, and `frame.json`.
     fn archive(&mut self, requests: &[FrameRequest], outputs: &[Output]) -> Result<Vec<u8>, JobError> {
-        let (plan, frames) = self.frames_of_outputs(requests)?;
+        let plans: Vec<Plan> =
+            requests.iter().map(|request| self.plan(request)).collect::<Result<_, JobError>>()?;
+        let frames = self.draw(&plans)?;
         let mut archive = Zip::default();
         for (frame, output) in frames.iter().zip(outputs) {
             archive.add(&format!("{}.png", output.word()), &encode::png(frame));
         }
-        let camera = plan::camera(self.scene, &requests[0], plan.view.width, plan.view.height)?;
-        archive.add("frame.json", &encode::frame_json(&plan, &camera, outputs, self.depth_range));
+        let camera = plan::camera(self.scene, &requests[0], self.size[0], self.size[1])?;
+        archive.add("frame.json", &encode::frame_json(&plans[0], &camera, outputs, self.depth_range));
         Ok(archive.finish())
-    }
-
-    /// The same frame for each of its outputs, and the plan of the first.
-    fn frames_of_outputs(&mut self, requests: &[FrameRequest]) -> Result<(Plan, Vec<Frame>), JobError> {
-        let plan = self.plan(&requests[0])?;
-        let mut frames = vec![self.draw(&plan)?];
-        for request in &requests[1..] {
-            frames.push(self.frame(request)?);
-        }
-        Ok((plan, frames))
     }
 
     /// The finished product. What was neither planning nor drawing was encoding.

@@ -56,7 +56,7 @@ impl Renderer {
     /// # Errors
     /// When the system refuses the pool's threads.
     pub fn new(settings: &Settings) -> std::io::Result<Self> {
-        Self::with_draw(settings, Box::new(pipeline::render))
+        Self::with_draw(settings, Box::new(pipeline::render_each))
     }
 
     /// A renderer that draws with `draw` in the pipeline's place: a test's slow, panicking or

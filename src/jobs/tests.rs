@@ -115,7 +115,7 @@ async fn a_closed_queue_refuses_but_finishes_what_it_has() {
     let gate = std::sync::Mutex::new(gate);
     let draw: Box<Draw> = Box::new(move |_, _| {
         gate.lock().expect("one job at a time").recv_timeout(PATIENCE).expect("let go");
-        Ok(frame())
+        Ok(vec![frame()])
     });
     let renderer = renderer(&settings(1, PATIENCE), draw);
     let callers: Vec<_> = (0..2)
@@ -139,7 +139,7 @@ async fn a_panic_is_an_error_and_the_next_frame_is_drawn() {
     let calls = AtomicUsize::new(0);
     let draw: Box<Draw> = Box::new(move |_, work| {
         assert!(calls.fetch_add(1, Ordering::Relaxed) > 0, "the first frame panics");
-        Ok(work.pool.install(frame))
+        Ok(vec![work.pool.install(frame)])
     });
     let renderer = renderer(&settings(0, PATIENCE), draw);
     assert!(matches!(ask(&renderer).await, Err(JobError::Panicked)));

@@ -140,7 +140,7 @@ async fn a_shutdown_finishes_the_frame_under_way() {
             while !go.load(Ordering::SeqCst) {
                 std::thread::sleep(Duration::from_millis(2));
             }
-            Ok(still(1, 1, |_| [0; 4]))
+            Ok(vec![still(1, 1, |_| [0; 4])])
         }
     });
     let app = Client::drawing_with(settings(), draw).app;
@@ -185,10 +185,11 @@ async fn a_client_that_does_not_read_is_given_up() {
     // Noise, so that the file is as large as its pixels: more than the sockets between hold.
     let draw: Box<Draw> = Box::new(|_, _| {
         let mut state = 1u32;
-        Ok(still(4096, 4096, |_| {
+        let noise = still(4096, 4096, |_| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (state ^ state >> 15).to_be_bytes()
-        }))
+        });
+        Ok(vec![noise])
     });
     let server = Server::start(Client::drawing_with(settings, draw).app).await;
     let _deaf = server.say(FRAME).await;
