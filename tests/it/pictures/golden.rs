@@ -286,6 +286,69 @@ fn golden_point_shadows() {
 }
 
 #[test]
+fn golden_transparency() {
+    let mut layers = still_life();
+    layers["meshes"]["pane"] = json!({ "type": "plane", "size": [1.4, 1.4] });
+    for (name, color, turn) in
+        [("red", [0.9, 0.1, 0.1], 5), ("green", [0.1, 0.7, 0.2], 65), ("blue", [0.1, 0.2, 0.9], -35)]
+    {
+        layers["materials"][name] =
+            json!({ "shading": "unlit", "diffuse": color, "opacity": 0.5, "double_sided": true });
+        layers["instances"][name] = json!({ "mesh": "pane", "material": name, "translation": [0, 0.7, 0],
+            "rotation_deg": [90, turn, 0] });
+    }
+    for shape in ["ball", "crate"] {
+        layers["instances"].as_object_mut().expect("a map").remove(shape);
+    }
+    check("blend/three_panes_that_cross_are_sorted_by_pixel", &layers);
+
+    let mut glass = still_life();
+    glass["materials"]["teal"] = json!({ "diffuse": "#16a085", "opacity": 0.4, "double_sided": true,
+        "specular": [0.6, 0.6, 0.6], "shininess": 60 });
+    glass["instances"]["ball"]["translation"] = json!([0.6, 0.5, -0.3]);
+    glass["instances"]["crate"]["scale"] = json!(1.5);
+    glass["instances"]["crate"]["translation"] = json!([0.4, 0.61, -0.2]);
+    check("blend/a_glass_box_shows_what_is_in_it", &glass);
+
+    let mut clear = still_life();
+    clear["instances"] = json!({ "ball": clear["instances"]["ball"] });
+    clear["camera"] = json!({ "position": [-0.6, 0.5, 2.4], "target": [-0.6, 0.5, 0.2], "fov_y_deg": 32 });
+    clear["materials"]["red"]["opacity"] = json!(0.6);
+    clear["environment"]["background"] = json!({ "type": "transparent" });
+    clear["render"] = json!({ "width": 64, "height": 64, "samples": 4 });
+    check("blend/a_clear_ball_on_a_transparent_background", &clear);
+}
+
+/// Two round holes and a ragged outline.
+fn leaf(x: u32, y: u32) -> [u8; 4] {
+    let (u, v) = (f64::from(x) / 31.5 - 1.0, f64::from(y) / 31.5 - 1.0);
+    let hole = |cx: f64, cy: f64| (u - cx).hypot(v - cy) < 0.17;
+    let wide = 0.75 * (1.0 - v * v) + 0.06 * f64::from(y % 8 / 4);
+    let vein = u.abs() < 0.04 || ((v + u.abs()) * 5.0).rem_euclid(1.0) < 0.12;
+    let is_there = u.abs() < wide && !hole(0.3, 0.2) && !hole(-0.25, -0.3);
+    let [r, g, b] = if vein { [150, 190, 60] } else { [60, 130, 40] };
+    [r, g, b, if is_there { 255 } else { 0 }]
+}
+
+#[test]
+fn golden_cut_outs() {
+    let mut document = still_life();
+    document["textures"]["leaf"] = json!({ "file": "leaf.png" });
+    document["materials"]["leaf"] =
+        json!({ "diffuse": [1, 1, 1], "diffuse_map": "leaf", "alpha_cutoff": 0.5, "double_sided": true });
+    document["meshes"]["leaf"] = json!({ "type": "plane", "size": [1.3, 1.3] });
+    document["instances"] = json!({ "floor": document["instances"]["floor"] });
+    document["instances"]["leaf"] = json!({ "mesh": "leaf", "material": "leaf", "translation": [0.3, 0.75, 0.2],
+        "rotation_deg": [40, 20, -20] });
+    document["lights"]["sun"]["direction"] = json!([-1, -0.9, 0.15]);
+    document["lights"]["sun"]["shadow"]["resolution"] = json!(1024);
+    document["render"] = json!({ "width": 128, "height": 96, "samples": 4 });
+    let files = file("leaf.png", png(64, 64, leaf));
+    let frame = draw(&document, &files, &FrameRequest::default());
+    assert_golden("cut_out/a_leaf_and_its_shadow_have_holes", &frame);
+}
+
+#[test]
 fn golden_backgrounds() {
     let sky = json!({ "lights": {}, "render": { "width": 64, "height": 64 },
         "camera": { "position": [0, 0, 0], "target": [0, 0, -1], "fov_y_deg": 150 } });
