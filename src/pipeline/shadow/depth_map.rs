@@ -197,7 +197,7 @@ impl Window<'_> {
     pub(super) fn texels<S: Simd>(&self, simd: S, x: i32x8<S>, y: i32x8<S>) -> f32x8<S> {
         match self {
             Self::Tile(tile) => {
-                let last = TILE_SIDE as i32 - 1;
+                let last = (1 << TILE_SHIFT) - 1;
                 let at = ((y & last) << TILE_SHIFT) | (x & last);
                 f32x8::from_fn(
                     simd,

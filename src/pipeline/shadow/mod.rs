@@ -45,7 +45,7 @@ pub enum ShadowMap {
     /// Of parallel light.
     Directional(DirectionalMap),
     /// Around a point light.
-    Cube(CubeMap),
+    Cube(Box<CubeMap>),
 }
 
 /// Taps of PCF.
@@ -80,7 +80,9 @@ enum Verdict {
 pub fn render_maps(passes: &[ShadowPass], work: &Work) -> Result<Vec<ShadowMap>, Cancelled> {
     let draw = |pass: &ShadowPass| match &pass.maps {
         Maps::Directional(face) => DirectionalMap::draw(pass, face, work).map(ShadowMap::Directional),
-        Maps::Cube { faces, .. } => CubeMap::draw(pass, faces, work).map(ShadowMap::Cube),
+        Maps::Cube { faces, .. } => {
+            CubeMap::draw(pass, faces, work).map(|map| ShadowMap::Cube(Box::new(map)))
+        }
     };
     passes.iter().map(draw).collect()
 }

@@ -194,9 +194,10 @@ mod tests {
             for _ in 0..2000 {
                 let side = i32::try_from(resolution).unwrap();
                 let mut pair = || {
-                    let (a, b) = (rng.below(resolution + 2), rng.below(1 + rng.0 as u32 % (resolution + 2)));
-                    let first = i32::try_from(a).unwrap() - 1;
-                    [first, (first + i32::try_from(b).unwrap()).min(side)]
+                    let widest = rng.below(resolution + 2) + 1;
+                    let [first, steps] =
+                        [resolution + 2, widest].map(|n| i32::try_from(rng.below(n)).unwrap());
+                    [first - 1, (first - 1 + steps).min(side)]
                 };
                 let texels = TexelBox { x: pair(), y: pair() };
                 let range = pyramid.range(&texels);

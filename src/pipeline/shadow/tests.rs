@@ -5,7 +5,7 @@ use crate::pipeline::work::Work;
 use std::sync::atomic::AtomicBool;
 
 /// A small random number generator (xorshift64*), so that a failure can be repeated.
-pub(super) struct Random(pub(super) u64);
+pub(super) struct Random(u64);
 
 impl Random {
     pub(super) fn new(seed: u64) -> Self {

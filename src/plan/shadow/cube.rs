@@ -37,7 +37,7 @@ pub(super) fn faces(position: DVec3, casters: &[&Caster], receivers: &[&Item], r
 /// The view through one side of the cube: for the axis i, to the right is ± axis i + 2, up axis i + 1.
 fn look_along(side: usize, position: DVec3, near: f64, resolution: u32) -> View {
     let axis = side / 2;
-    let sign = if side % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if side.is_multiple_of(2) { 1.0 } else { -1.0 };
     let unit = |axis: usize| DVec3::AXES[axis % 3];
     View {
         eye: position,

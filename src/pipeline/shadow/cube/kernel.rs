@@ -106,7 +106,7 @@ impl Kernel {
     pub(super) fn footprint(&self, receiver: &Receiver, side: usize) -> Option<Footprint> {
         let p = receiver.place.to_array();
         let reach = self.reach();
-        let (axis, sign) = (side / 2, if side % 2 == 0 { 1.0 } else { -1.0 });
+        let (axis, sign) = (side / 2, if side.is_multiple_of(2) { 1.0 } else { -1.0 });
         let far = p[axis] * sign + reach;
         // A tap's side is the axis along which it is longest, and none is shorter than this.
         let shortest = receiver.distance - reach;
@@ -114,8 +114,9 @@ impl Kernel {
             return None;
         }
         let near = if far - 2.0 * reach > shortest { far - 2.0 * reach } else { shortest };
-        // Also where a number is none.
-        if !(near > 1.0 / 16.0) {
+        // Not so where a number is none.
+        let is_narrow = near > 1.0 / 16.0;
+        if !is_narrow {
             return Some(Footprint::Whole);
         }
         let tangents = always(
@@ -186,7 +187,8 @@ fn tangents(d: Vec3) -> [Vec3; 2] {
     let across = d.x * d.x + d.z * d.z;
     // 1 / (1 − y), without cancellation close to y = 1.
     let a = if d.y < 0.0 { 1.0 / (1.0 - d.y) } else { (1.0 + d.y) / across };
-    if !(across > 0.0) {
+    let is_upright = across == 0.0;
+    if is_upright {
         return [Vec3::X, Vec3::Z];
     }
     let xz = d.x * d.z * a;
