@@ -187,7 +187,8 @@ fn tangents(d: Vec3) -> [Vec3; 2] {
     let across = d.x * d.x + d.z * d.z;
     // 1 / (1 − y), without cancellation close to y = 1.
     let a = if d.y < 0.0 { 1.0 / (1.0 - d.y) } else { (1.0 + d.y) / across };
-    let is_upright = across == 0.0;
+    // Nearer than f32 can tell from upright 1 / across would overflow.
+    let is_upright = across < 1e-30;
     if is_upright {
         return [Vec3::X, Vec3::Z];
     }
@@ -215,6 +216,8 @@ mod tests {
             }
         }
         assert!(worst < 1e-5, "{worst}");
-        assert_eq!(tangents(Vec3::Y), [Vec3::X, Vec3::Z]);
+        for almost in [Vec3::Y, Vec3::new(1e-20, 1.0, 0.0), Vec3::new(0.0, 1.0, -1e-16)] {
+            assert_eq!(tangents(almost), [Vec3::X, Vec3::Z], "{almost}");
+        }
     }
 }
