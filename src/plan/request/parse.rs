@@ -288,7 +288,7 @@ mod tests {
         assert_eq!(Output::list("depth, color"), Ok(vec![Output::Depth, Output::Color]));
         assert_eq!(Output::list("depth,depth"), Err("names depth more than once".to_owned()));
         let fault = Output::list("color,").unwrap_err();
-        assert_eq!(fault, "must be one of color, depth, normal, albedo, instance, is \"\"");
+        assert_eq!(fault, "must be one of color, depth, normal, albedo, instance, wireframe, is \"\"");
         assert!(Output::all().into_iter().all(|output| Output::list(output.word()) == Ok(vec![output])));
     }
 
