@@ -89,7 +89,10 @@ pub struct Limits {
     pub shadow_texels: u64,
     /// Lights of one scene: each costs time at every pixel. Fixed.
     pub lights: usize,
-    /// Entries of any one map of the document. Fixed.
+    /// Entries of `environment.backgrounds`: a procedural sky of a few words is some milliseconds' work.
+    /// Fixed.
+    pub backgrounds: usize,
+    /// Entries of any other map of the document. Fixed.
     pub entries: usize,
     /// Characters of a name, [`MAX_NAME_CHARS`].
     pub name_chars: usize,
@@ -128,6 +131,7 @@ impl Default for Limits {
             texture_side: 16_384,
             shadow_texels: 1 << 28,
             lights: 1024,
+            backgrounds: 256,
             entries: 65_536,
             name_chars: MAX_NAME_CHARS,
             shape_segments: MAX_SHAPE_SEGMENTS,

@@ -26,7 +26,7 @@ pub(super) fn check(document: &Document, limits: &Limits) -> Result<(), SceneErr
 fn entries(document: &Document, limits: &Limits) -> Result<(), SceneError> {
     let parts = [
         ("lights", document.lights.len(), limits.lights),
-        ("environment.backgrounds", document.environment.backgrounds.len(), limits.entries),
+        ("environment.backgrounds", document.environment.backgrounds.len(), limits.backgrounds),
         ("textures", document.textures.len(), limits.entries),
         ("materials", document.materials.len(), limits.entries),
         ("meshes", document.meshes.len(), limits.entries),
