@@ -53,11 +53,13 @@ const DISC_RADIANCE: f64 = 250.0;
 /// above it are then as bright as outdoors, without a tone mapper.
 const EXPOSURE: f64 = 8.0;
 
-/// The mean radiance of a sky at which [`EXPOSURE`] holds, per irradiance of the sun: a clear day's.
+/// Mean radiances, per irradiance of the sun, between which [`EXPOSURE`] holds: from a sun 10° high to a
+/// clear midday.
+const DUSK: f64 = 0.02;
 const DAY: f64 = 0.057;
 
-/// How much of a darker or brighter sky the eye makes up for: the exponent of its ratio to [`DAY`].
-const ADAPTATION: f64 = 0.35;
+/// How much of darker and brighter skies the eye makes up for: the exponent of their ratio to these.
+const ADAPTATION: f64 = 0.55;
 
 /// A moonless night in the country, so that none is quite black.
 const NIGHT: DVec3 = DVec3::new(0.0004, 0.0006, 0.0012);
@@ -77,8 +79,7 @@ impl Daylight {
         let gathered: Vec<Gathered> =
             (0..ROWS * COLUMNS).into_par_iter().map(|at| air.gather(sight(at, sun_up))).collect();
         let sky = mean(&gathered, sun_up);
-        let adapted = libm::pow(sky.dot(LUMINANCE).max(1e-9) / DAY, -ADAPTATION);
-        let exposure = EXPOSURE * adapted;
+        let exposure = exposure(sky.dot(LUMINANCE));
         let sun = air.at_ground(sun_up);
         let plain = sky + sun * (sun_up.max(0.0) * std::f64::consts::FRAC_1_PI);
         let entry = |gathered: &Gathered| {
@@ -119,6 +120,17 @@ impl fmt::Debug for Daylight {
             .field("turbidity", &self.turbidity)
             .finish_non_exhaustive()
     }
+}
+
+/// What the radiances of a sky are multiplied by, given their mean. A brighter sky stays the brighter
+/// one: the exponent is less than 1.
+fn exposure(mean: f64) -> f64 {
+    let ratio = match mean {
+        mean if mean < DUSK => DUSK / mean.max(1e-9),
+        mean if mean > DAY => DAY / mean,
+        _ => 1.0,
+    };
+    EXPOSURE * libm::pow(ratio, ADAPTATION)
 }
 
 /// The line of sight of a table's entry.

@@ -148,18 +148,17 @@ impl Grid {
     fn of([altitudes, suns]: [usize; 2], [least, most]: [f64; 2], value: impl Fn(f64, f64) -> DVec3) -> Self {
         let mut values = Vec::with_capacity(altitudes * suns);
         for i in 0..altitudes {
-            let share = part(i, altitudes);
+            let altitude_km = altitude_of(part(i, altitudes));
             for j in 0..suns {
-                let sun_up = least + (most - least) * part(j, suns);
-                values.push(value(share * share * (TOP_KM - GROUND_KM), sun_up));
+                values.push(value(altitude_km, least + (most - least) * part(j, suns)));
             }
         }
         Self { altitudes, suns, sun_up: [least, most - least], values }
     }
 
-    /// Bilinear between the grid's points, whose altitudes are squares.
+    /// Bilinear between the grid's points.
     fn at(&self, altitude_km: f64, sun_up: f64) -> DVec3 {
-        let (i, s) = place((altitude_km / (TOP_KM - GROUND_KM)).max(0.0).sqrt(), self.altitudes);
+        let (i, s) = place(share_of(altitude_km), self.altitudes);
         let (j, t) = place((sun_up - self.sun_up[0]) / self.sun_up[1], self.suns);
         let row = |i: usize| {
             let (a, b) = (self.values[i * self.suns + j], self.values[i * self.suns + j + 1]);
@@ -169,6 +168,21 @@ impl Grid {
         a + (b - a) * s
     }
 }
+
+/// Where a grid has an altitude, 0–1: half of its points lie in the lowest tenth of the air, evenly
+/// where haze is.
+fn share_of(altitude_km: f64) -> f64 {
+    altitude_km / (altitude_km + CROWDED_KM) / AIR_SHARE
+}
+
+/// The altitude at a share of a grid: the inverse of [`share_of`].
+fn altitude_of(share: f64) -> f64 {
+    let share = share * AIR_SHARE;
+    share * CROWDED_KM / (1.0 - share)
+}
+
+const CROWDED_KM: f64 = 5.0;
+const AIR_SHARE: f64 = (TOP_KM - GROUND_KM) / (TOP_KM - GROUND_KM + CROWDED_KM);
 
 /// `i` of `count` points from 0 to 1.
 #[expect(clippy::cast_precision_loss, reason = "grids have a few dozen points")]

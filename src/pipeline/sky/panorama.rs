@@ -113,21 +113,42 @@ fn between_rows(level: &PanoramaLevel, u: f32, v: f32, reach: f32, decode: &[f32
 #[inline(always)]
 fn along_row(level: &PanoramaLevel, row: usize, u: f32, reach: f32, decode: &[f32; 256]) -> Radiance {
     let width = count(level.width);
-    let reach = (reach * width).clamp(1.0, width);
-    // A turn further, so that it stays positive.
+    let texel = always(
+        #[inline(always)]
+        |column: usize| level.texels.linear(row * level.width + wrapped(column, level.width), decode),
+    );
+    // Columns are counted from a turn before, so that none is negative.
+    if reach * width <= 1.0 {
+        let x = u * width - 0.5 + width;
+        let first = whole(x);
+        return mix(texel(first), texel(first + 1), x - count(first));
+    }
+    let reach = (reach * width).min(width);
     let begin = u * width - reach * 0.5 + width;
     let end = begin + reach;
-    let (mut sum, mut column, mut at) = ([0.0; 3], whole(begin) % level.width, begin);
-    while at < end {
-        let next = (at.floor() + 1.0).min(end);
-        let texel = level.texels.linear(row * level.width + column, decode);
-        for c in 0..3 {
-            sum[c] += texel[c] * (next - at);
-        }
-        column = if column + 1 == level.width { 0 } else { column + 1 };
-        at = next;
+    let (first, last) = (whole(begin), whole(end));
+    let mut sum = texel(first).map(|c| c * (count(first + 1) - begin));
+    for column in first + 1..last {
+        add(&mut sum, texel(column), 1.0);
     }
+    add(&mut sum, texel(last), end - count(last));
     sum.map(|c| c / reach)
+}
+
+/// A column counted from up to three turns before.
+#[inline(always)]
+fn wrapped(mut column: usize, width: usize) -> usize {
+    while column >= width {
+        column -= width;
+    }
+    column
+}
+
+#[inline(always)]
+fn add(sum: &mut Radiance, texel: Radiance, weight: f32) {
+    for c in 0..3 {
+        sum[c] += texel[c] * weight;
+    }
 }
 
 #[inline(always)]
