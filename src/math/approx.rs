@@ -4,10 +4,11 @@
 //! on every one. Bounds are checked against `libm` in the tests.
 
 use crate::math::simd::*;
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f32::consts::FRAC_PI_2;
 
-/// What π is more than its rounded value.
-const PI_TAIL: f32 = -8.742_278e-8;
+/// π/4 to so few bits that its multiples up to π are exact, and the rest.
+const EIGHTH: f32 = 0.785_156_25;
+const EIGHTH_TAIL: f32 = 2.419_134e-4;
 
 /// `log2(1 + d)` where `x = 1 + d` is its rounded value; `x` must be positive and normal.
 ///
@@ -113,11 +114,13 @@ pub fn atan2<S: Simd>(y: f32x8<S>, x: f32x8<S>) -> f32x8<S> {
     }
     // z + z·t·p keeps the digits of z.
     let near = z + z * (t * p);
-    // π and its parts in two numbers: the rounding error of one is half an ulp of the result.
-    let octant = far.select((near + PI_TAIL * 0.25) + FRAC_PI_4, near);
-    let quarter = steep.select((octant * -1.0 + PI_TAIL * 0.5) + FRAC_PI_2, octant);
-    let half = x.simd_lt(zero).select((quarter * -1.0 + PI_TAIL) + PI, quarter);
-    half.copysign(y)
+    // The angle is a multiple of π/4, plus or minus the rest: added in one step, rounded once.
+    let eighths = far.select(one, zero);
+    let (eighths, near) = (steep.select(eighths * -1.0 + 2.0, eighths), steep.select(near * -1.0, near));
+    let left = x.simd_lt(zero);
+    let (eighths, near) = (left.select(eighths * -1.0 + 4.0, eighths), left.select(near * -1.0, near));
+    let angle = (near + eighths * EIGHTH_TAIL) + eighths * EIGHTH;
+    angle.copysign(y)
 }
 
 /// The sRGB encoding (IEC 61966-2-1) of linear values in 0–1.
