@@ -47,7 +47,7 @@ fn frame_json(entries: &BTreeMap<String, Vec<u8>>) -> Value {
 async fn its_pictures_are_the_frames_of_their_outputs() {
     let client = boxed().await;
     let all = entries(&client.get("/scenes/t/frame.zip").await);
-    for output in ["color", "depth", "normal", "albedo", "instance"] {
+    for output in ["color", "depth", "normal", "albedo", "instance", "wireframe"] {
         let frame = client.get(&format!("/scenes/t/frame.png?output={output}")).await;
         assert!(all[&format!("{output}.png")] == frame.body, "{output}");
         assert_eq!(frame_json(&all)["files"][output], format!("{output}.png"));
