@@ -9,6 +9,7 @@ use glam::dcamera::rh::proj::directx::perspective_infinite_reverse;
 use glam::dcamera::rh::view::look_at_mat4;
 use glam::{DMat4, DVec3, Vec3};
 use rasterd::encode;
+use rasterd::math::round_to_f32;
 use rasterd::math::simd::Level;
 use rasterd::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
 use rasterd::pipeline::draw::{DrawCall, Rect, State, Targets};
@@ -91,7 +92,7 @@ impl Program for Textured {
         let position = out * 0.5 + along_u * (u - 0.5) + along_v * (v - 0.5);
         let light = DVec3::new(0.35, 0.8, 0.5).normalize();
         let values = [u, v, 0.35 + 0.65 * out.dot(light).max(0.0)];
-        varyings.copy_from_slice(&values.map(|value| value as f32));
+        varyings.copy_from_slice(&values.map(round_to_f32));
         let placed = position * 0.8 + DVec3::new(1.35, -0.1, 0.25);
         (self.clip_from_world * placed.extend(1.0)).to_array()
     }
@@ -141,6 +142,16 @@ fn draw_from(eye: DVec3, targets: &mut Targets, state: &State, work: &Work) -> R
     textured.draw(targets, state, work)
 }
 
+/// A share as 16-bit grey.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a float-to-integer cast saturates"
+)]
+fn grey(share: f32) -> u16 {
+    (share * 65535.0) as u16
+}
+
 /// The depth target, as reciprocals of the distance, and the id target, in greys: the middle one of the
 /// pixels that each of the picture's has.
 fn greys(targets: &Targets) -> [Frame; 2] {
@@ -155,8 +166,8 @@ fn greys(targets: &Targets) -> [Frame; 2] {
     let middles = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| [x, y].map(|c| c * SCALE + SCALE / 2)));
     let middles: Vec<usize> = middles.map(|[x, y]| (y * WIDTH * SCALE + x) as usize).collect();
     // The near plane is at 0.1: nothing here is nearer than 2, of depth 0.05.
-    let depth = middles.iter().map(|&at| (targets.depth()[at] * 20.0 * 65535.0) as u16);
-    let ids = middles.iter().map(|&at| targets.ids()[at] as u16 * 20000);
+    let depth = middles.iter().map(|&at| grey(targets.depth()[at] * 20.0));
+    let ids = middles.iter().map(|&at| u16::try_from(targets.ids()[at] * 20_000).unwrap_or(u16::MAX));
     [frame(depth.collect()), frame(ids.collect())]
 }
 

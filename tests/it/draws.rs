@@ -1,6 +1,7 @@
 //! Draw calls: programs, render targets and the state between them.
 
 use crate::measure::at_most;
+use rasterd::math::round_to_f32;
 use rasterd::math::simd::Level;
 use rasterd::pipeline::Work;
 use rasterd::pipeline::draw::{DrawCall, Rect, State, Targets};
@@ -95,7 +96,7 @@ fn the_nearer_card_is_seen_whatever_the_order_of_calls() {
     for order in [[0.25, 0.5], [0.5, 0.25]] {
         let mut targets = targets();
         for depth in order {
-            draw_card(&mut targets, &State::new(WHOLE), &card(EVERYWHERE, depth, depth as f32));
+            draw_card(&mut targets, &State::new(WHOLE), &card(EVERYWHERE, depth, round_to_f32(depth)));
         }
         assert!(targets.color(0).iter().all(|color| (color[0] - 0.5).abs() < 1e-6));
         assert!(targets.depth().iter().all(|&depth| depth == 0.5));
@@ -108,7 +109,7 @@ fn without_the_depth_test_the_last_call_is_seen_and_no_depth_kept() {
     let mut targets = targets();
     let state = State { depth_test: false, ..State::new(WHOLE) };
     for depth in [0.5, 0.25] {
-        draw_card(&mut targets, &state, &card(EVERYWHERE, depth, depth as f32));
+        draw_card(&mut targets, &state, &card(EVERYWHERE, depth, round_to_f32(depth)));
     }
     assert_eq!(red(&targets, 40, 40), 0.25);
     assert_eq!(targets.depth()[0], 0.0);
@@ -126,7 +127,8 @@ fn without_depth_writes_a_card_is_tested_but_hides_nothing() {
 
 #[test]
 fn within_one_call_without_depth_writes_the_last_of_the_nearer_wins() {
-    let vertices = [0.5, 0.25, 0.125].map(|depth| card(EVERYWHERE, depth, depth as f32).vertices).concat();
+    let vertices =
+        [0.5, 0.25, 0.125].map(|depth| card(EVERYWHERE, depth, round_to_f32(depth)).vertices).concat();
     let both = Plain { vertices, cutoff: None };
     let triangles: Vec<[u32; 3]> = (0..3).flat_map(|n| QUAD.map(|t| t.map(|v| v + 4 * n))).collect();
     let mut targets = targets();
@@ -207,7 +209,7 @@ fn what_is_discarded_hides_nothing() {
 #[test]
 fn varyings_and_their_derivatives_are_perspective_correct() {
     // x = ±1, y = −1 below the eye, from w = 1 to w = 50; z is the near distance.
-    let corner = |x: f64, w: f64| ([x * w, -1.0, 0.5, w], w as f32);
+    let corner = |x: f64, w: f64| ([x * w, -1.0, 0.5, w], round_to_f32(w));
     let floor = Plain {
         vertices: vec![corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, 50.0), corner(-1.0, 50.0)],
         cutoff: None,
@@ -233,7 +235,7 @@ fn varyings_and_their_derivatives_are_perspective_correct() {
 #[test]
 fn a_triangle_through_the_eye_is_cut_at_the_near_plane() {
     // Half of it lies behind the eye.
-    let corner = |x: f64, w: f64| ([x, -0.5, 0.125, w], w as f32);
+    let corner = |x: f64, w: f64| ([x, -0.5, 0.125, w], round_to_f32(w));
     let floor = Plain {
         vertices: vec![corner(-4.0, -3.0), corner(4.0, -3.0), corner(4.0, 5.0), corner(-4.0, 5.0)],
         cutoff: None,

@@ -220,7 +220,6 @@ fn clip_positions(primitives: &Primitives, corners: [u32; 3], level: Level) -> [
 }
 
 /// Sets up the pieces of a cut triangle: a fan around the polygon's first corner.
-#[expect(clippy::too_many_arguments, reason = "one step of `process`, with its state")]
 fn process_clipped(
     polygon: &Polygon,
     slot: Slot,

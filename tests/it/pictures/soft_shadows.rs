@@ -84,6 +84,11 @@ impl Edge {
             let hidden = from_edge + self.height < 0.0;
             if (0.0..BINS as f64).contains(&at) && !hidden {
                 let lit = decode(without.at(x, y)[0]);
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "one of the bins"
+                )]
                 let bin = &mut bins[at as usize];
                 *bin = (bin.0 + decode(pixel[0]) / lit, bin.1 + 1.0);
             }
