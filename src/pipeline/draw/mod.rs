@@ -1,7 +1,7 @@
 //! Draw calls: programs and indexed triangles in, render targets out.
 //!
 //! What a scene's frame does in one go, call by call, for a program that has its own idea of a scene.
-//! The stages are the same: [`geometry`](super::geometry), then tile by tile coverage, fragments,
+//! The stages are the same: [`geometry`], then tile by tile coverage, fragments,
 //! pixel shader; one sample a pixel.
 
 mod state;

@@ -2,7 +2,7 @@
 //!
 //! Pointwise effects ([`pointwise`]) are steps on eight pixels in registers, taken wherever those pass
 //! by: in the tiles, between two passes, on the way to bytes. Every other effect is made of passes
-//! ([`passes`]) that write one plane row by row out of others, in bands of rows on all threads.
+//! (`passes`) that write one plane row by row out of others, in bands of rows on all threads.
 //!
 //! Colour is linear and premultiplied with alpha here; pointwise steps see it straight. Nothing is
 //! clamped to 0–1 between effects, but every effect leaves finite numbers, whatever its parameters.

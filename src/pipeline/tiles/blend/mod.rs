@@ -2,7 +2,7 @@
 //!
 //! In: a tile whose opaque surfaces and sky are shaded. The layers of its blended triangles that nothing
 //! opaque hides are shaded once a pixel and triangle, and composited over it in linear light, far to
-//! near sample by sample ([`composite`]). Where there are too many layers to hold at once, the tile is
+//! near sample by sample (`composite`). Where there are too many layers to hold at once, the tile is
 //! cut into windows, down to single pixels.
 
 mod composite;
