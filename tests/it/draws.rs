@@ -6,6 +6,7 @@ use rasterd::math::simd::Level;
 use rasterd::pipeline::Work;
 use rasterd::pipeline::draw::{DrawCall, Rect, State, Targets};
 use rasterd::pipeline::program::{Block, Program};
+use rasterd::pipeline::shade::BLOCK;
 use rasterd::pipeline::shader::Outputs;
 use rasterd::scene::Cull;
 use std::sync::atomic::AtomicBool;
@@ -247,4 +248,44 @@ fn a_triangle_through_the_eye_is_cut_at_the_near_plane() {
     let below = ((SIDE - 1) * SIDE + 40) as usize;
     assert_eq!(targets.ids()[below], 7);
     assert!((targets.color(0)[below][0] - 0.506).abs() < 0.01, "{}", targets.color(0)[below][0]);
+}
+
+/// Writes its second target only in blocks that begin in the left half.
+struct LeftAlone(Plain);
+
+impl Program for LeftAlone {
+    fn varyings(&self) -> usize {
+        1
+    }
+
+    fn vertex(&self, vertex: u32, instance: u32, varyings: &mut [f32]) -> [f64; 4] {
+        self.0.vertex(vertex, instance, varyings)
+    }
+
+    fn pixels(&self, _: Level, block: &Block, out: &mut Outputs) {
+        if block.varyings[0][0] < 0.5 {
+            out.colors[1] = [[1.0; BLOCK]; 4];
+        }
+    }
+}
+
+#[test]
+fn what_a_pixel_part_leaves_alone_is_transparent_black() {
+    let mut ramp = card(EVERYWHERE, 0.5, 0.0);
+    ramp.vertices[1].1 = 1.0;
+    ramp.vertices[2].1 = 1.0;
+    // The lower half again, all of it beyond the middle: its blocks follow others in the same tile.
+    let beyond = card([-1.0, -1.0, 1.0, 0.0], 0.75, 0.75);
+    let vertices = [ramp.vertices, beyond.vertices].concat();
+    let program = LeftAlone(Plain { vertices, cutoff: None });
+    let triangles: Vec<[u32; 3]> = (0..2).flat_map(|n| QUAD.map(|t| t.map(|v| v + 4 * n))).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let call = DrawCall { program: &program, vertices: 8, triangles: &triangles, instances: 1, first_id: 1 };
+    let mut targets = targets();
+    call.draw(&mut targets, &State::new(WHOLE), &work).expect("nothing cancels");
+    let at = |x: u32, y: u32| targets.color(1)[(y * SIDE + x) as usize];
+    assert!(targets.color(1)[..(40 * SIDE) as usize].contains(&[1.0; 4]));
+    assert_eq!(at(5, 60), [0.0; 4]);
+    assert_eq!(at(5, 75), [0.0; 4]);
 }

@@ -36,7 +36,8 @@ pub trait Program: Sync {
     /// [`ClipBlock`]. It must give the same bits whenever it is asked.
     fn vertex(&self, vertex: u32, instance: u32, varyings: &mut [f32]) -> [f64; 4];
 
-    /// The pixel part: colours of a block of fragments, target by target.
+    /// The pixel part: colours of a block of fragments, target by target. A target that it leaves alone
+    /// gets transparent black.
     ///
     /// Lanes from `block.len()` on hold copies of the last fragment; what is written there is not read.
     fn pixels(&self, level: Level, block: &Block, out: &mut Outputs);
@@ -110,7 +111,8 @@ impl Shading for Run<'_> {
         interpolate::interpolate(level, &self.records, fragments, &mut self.values, &mut self.derivatives);
         let back = fragments.iter().enumerate();
         let back = back.fold(0, |bits, (i, f)| bits | u64::from(self.records.is_back(f.record)) << i);
-        out.discarded = 0;
+        // What the pixel part leaves alone is black, whatever the block before it left.
+        *out = Outputs::default();
         let block = Block {
             fragments,
             varyings: &self.values,

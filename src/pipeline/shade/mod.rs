@@ -8,6 +8,7 @@ pub mod light;
 pub mod relief;
 pub mod texture;
 pub mod varyings;
+pub(super) mod weights;
 
 use super::shadow::ShadowMap;
 use crate::math::simd::*;

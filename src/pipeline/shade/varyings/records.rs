@@ -5,6 +5,7 @@ use super::{RayFrame, ShadowFrame, Source};
 use crate::math::{Projection, round_to_f32};
 use crate::pipeline::geometry::bin::Chunk;
 use crate::pipeline::geometry::setup::Triangle;
+use crate::pipeline::shade::weights::{derivative_numerators, perspective_scale};
 use crate::plan::{Relief, Surface};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
@@ -88,7 +89,7 @@ impl Records {
     /// Adds the record of a triangle of `chunk`.
     pub fn push(&mut self, source: &Source, t: &Triangle, chunk: &Chunk) {
         let corners = Corners::new(source, t, chunk);
-        let scale = perspective_scale(source, t, &corners);
+        let scale = perspective_scale(homogeneous(source, &corners), t.doubled_area());
         self.push_edges(t, scale);
         let shadow_normal = corners.geometric_normal;
         for frame in source.shadows {
@@ -176,28 +177,13 @@ impl Records {
 
     /// Coordinates at corner 0, how much corners 1 and 2 differ from them, times their scale, and the
     /// numerators of their screen derivatives.
-    ///
-    /// With U = Σ lᵢuᵢ and D = Σ lᵢ linear over the screen, `∂(U/D)/∂x = (Uₓ D − U Dₓ) / D²`, whose
-    /// numerator is linear in y alone (and that of ∂/∂y in x alone): three numbers a coordinate, in
-    /// units per pixel.
     fn push_uvs(&mut self, uv: &[DVec2; 3], t: &Triangle, scale: [f64; 3]) {
         for v in [uv[0], (uv[1] - uv[0]) * scale[1], (uv[2] - uv[0]) * scale[2]] {
             self.doubles.extend_from_slice(&v.to_array());
         }
-        let [e1, e2] = t.edges_from_corner_0();
-        let e0 = [0.0 - e1[0] - e2[0], 0.0 - e1[1] - e2[1]];
-        let edges = [e0, e1, e2];
-        let slope =
-            |value: [f64; 3], axis: usize| (0..3).map(|i| edges[i][axis] * scale[i] * value[i]).sum::<f64>();
-        let at_0 = t.doubled_area() * scale[0];
-        let d = [slope([1.0; 3], 0), slope([1.0; 3], 1)];
         for axis in 0..2 {
-            let value = uv.map(|uv| uv[axis]);
-            let g = [slope(value, 0), slope(value, 1)];
-            let along_x = (g[0] - value[0] * d[0]) * at_0;
-            let along_y = (g[1] - value[0] * d[1]) * at_0;
-            let cross = g[0] * d[1] - g[1] * d[0];
-            self.singles.extend([along_x, along_y, cross].map(|n| round_to_f32(n * 256.0)));
+            let numerators = derivative_numerators(t, scale, uv.map(|uv| uv[axis]));
+            self.singles.extend(numerators.map(round_to_f32));
         }
     }
 }
@@ -221,17 +207,11 @@ fn plane_over_distance(normal: DVec3, corners: [DVec3; 3]) -> DVec3 {
     normal / distance.abs().max(GRAZING * reach).copysign(distance)
 }
 
-/// The factors kᵢ of the edge functions: `lᵢ = kᵢ Eᵢ` is in 0–1 and proportional to the perspective
-/// weight of corner i.
-fn perspective_scale(source: &Source, t: &Triangle, corners: &Corners) -> [f64; 3] {
-    let area = t.doubled_area();
+/// Homogeneous coordinates of the corners.
+fn homogeneous(source: &Source, corners: &Corners) -> [f64; 3] {
     match source.projection {
-        Projection::Orthographic => [1.0 / area; 3],
-        Projection::Perspective => {
-            let w = corners.positions.map(|p| p.dot(source.forward));
-            let nearest = w[0].min(w[1]).min(w[2]);
-            w.map(|w| nearest / w / area)
-        }
+        Projection::Orthographic => [1.0; 3],
+        Projection::Perspective => corners.positions.map(|p| p.dot(source.forward)),
     }
 }
 
