@@ -2,7 +2,7 @@
 
 use super::geometry::bin::Chunk;
 use super::geometry::setup::Triangle;
-use super::shade::{BLOCK, Fragment};
+use super::shade::{BLOCK, Fragment, Scratch};
 use crate::math::simd::Level;
 use std::ops::Range;
 
@@ -64,13 +64,14 @@ pub type Visible<'a> = (&'a Chunk, &'a Triangle);
 pub trait PixelShader: Sync {
     /// Begins a run of fragments: those of one draw in one tile. `triangles` are what their
     /// [`Fragment::record`]s count in.
-    fn open<'a>(&'a self, triangles: &[Visible<'a>]) -> Box<dyn Shading + 'a>;
+    fn open<'a>(&'a self, triangles: &mut dyn Iterator<Item = Visible<'a>>) -> Box<dyn Shading + 'a>;
 }
 
 /// The shading of one run of fragments.
 pub trait Shading {
-    /// Shades up to [`BLOCK`] fragments; writes index i of `out` for fragment i.
-    fn shade(&mut self, level: Level, fragments: &[Fragment], out: &mut Outputs);
+    /// Shades up to [`BLOCK`] fragments; writes index i of `out` for fragment i. `scratch` is room to work
+    /// in, of any content.
+    fn shade(&mut self, level: Level, fragments: &[Fragment], scratch: &mut Scratch, out: &mut Outputs);
 }
 
 /// Colours of one render target for a block: red, green, blue, alpha.

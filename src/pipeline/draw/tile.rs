@@ -7,7 +7,7 @@ use crate::math::simd::*;
 use crate::pipeline::geometry::Bins;
 use crate::pipeline::program::Instance;
 use crate::pipeline::samples;
-use crate::pipeline::shade::{BLOCK, Fragment};
+use crate::pipeline::shade::{self, BLOCK, Fragment};
 use crate::pipeline::shader::{Outputs, PixelShader};
 use crate::pipeline::tiles::cover::{self, BlockDepths, IdTarget, Region, Target, Visibility};
 use crate::pipeline::tiles::fragments::{Entry, Fragments, SampleOrder, triangle};
@@ -27,6 +27,7 @@ pub(super) struct Scratch {
     seen: Visibility,
     blocks: BlockDepths,
     fragments: Fragments,
+    shade: shade::Scratch,
     outputs: Outputs,
 }
 
@@ -60,10 +61,10 @@ impl Pass<'_> {
         scratch.fragments.collect(level, &scratch.seen, &region, side, &order, list, self.bins);
         for run in &scratch.fragments.runs {
             let visible = &scratch.fragments.visible[run.first[0]..run.end[0]];
-            let visible = visible.iter().map(|&id| triangle(list[id as usize - 1], self.bins));
-            let mut shading = self.instances[run.draw as usize].open(&visible.collect::<Vec<_>>());
+            let mut visible = visible.iter().map(|&id| triangle(list[id as usize - 1], self.bins));
+            let mut shading = self.instances[run.draw as usize].open(&mut visible);
             for block in scratch.fragments.sorted[run.first[1]..run.end[1]].chunks(BLOCK) {
-                shading.shade(level, block, &mut scratch.outputs);
+                shading.shade(level, block, &mut scratch.shade, &mut scratch.outputs);
                 self.write(block, run.draw, &scratch.seen, &scratch.outputs, side, tile);
             }
         }

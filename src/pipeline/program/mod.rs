@@ -7,7 +7,7 @@
 mod interpolate;
 mod records;
 
-use super::shade::{BLOCK, Fragment};
+use super::shade::{BLOCK, Fragment, Scratch};
 use super::shader::{ClipBlock, Outputs, PixelShader, Shading, VertexShader, Visible};
 use crate::math::simd::Level;
 use records::Records;
@@ -89,9 +89,9 @@ impl VertexShader for Instance<'_> {
 }
 
 impl PixelShader for Instance<'_> {
-    fn open<'a>(&'a self, triangles: &[Visible<'a>]) -> Box<dyn Shading + 'a> {
+    fn open<'a>(&'a self, triangles: &mut dyn Iterator<Item = Visible<'a>>) -> Box<dyn Shading + 'a> {
         let mut records = Records::new(self.program);
-        triangles.iter().for_each(|visible| records.push(self, *visible));
+        triangles.for_each(|visible| records.push(self, visible));
         let values = vec![[0.0; BLOCK]; self.program.varyings()];
         let derivatives = vec![[[0.0; BLOCK]; 2]; self.program.differentiated()];
         Box::new(Run { of: self, records, values, derivatives })
@@ -107,7 +107,7 @@ struct Run<'a> {
 }
 
 impl Shading for Run<'_> {
-    fn shade(&mut self, level: Level, fragments: &[Fragment], out: &mut Outputs) {
+    fn shade(&mut self, level: Level, fragments: &[Fragment], _: &mut Scratch, out: &mut Outputs) {
         interpolate::interpolate(level, &self.records, fragments, &mut self.values, &mut self.derivatives);
         let back = fragments.iter().enumerate();
         let back = back.fold(0, |bits, (i, f)| bits | u64::from(self.records.is_back(f.record)) << i);

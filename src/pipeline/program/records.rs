@@ -3,25 +3,16 @@
 use super::{Instance, Program, VARYINGS};
 use crate::math::round_to_f32;
 use crate::pipeline::geometry::setup::NOT_CLIPPED;
-use crate::pipeline::shade::weights::{derivative_numerators, perspective_scale};
+use crate::pipeline::shade::table::{self, Table};
 use crate::pipeline::shader::Visible;
-
-// The f64 part of a record: corner 0; steps of the edge functions of corners 1 and 2, which vanish
-// there; twice the area; the factor of each edge function that makes it a perspective weight.
-pub(super) const ORIGIN: usize = 0;
-pub(super) const EDGES: usize = 2;
-pub(super) const AREA: usize = 6;
-pub(super) const SCALE: usize = 7;
-pub(super) const DOUBLES: usize = 10;
 
 /// Records of the visible triangles of one run.
 pub(super) struct Records {
     pub(super) varyings: usize,
     pub(super) differentiated: usize,
-    /// [`DOUBLES`] a record.
-    pub(super) doubles: Vec<f64>,
-    /// Varyings of the three corners, then three numbers for each differentiated one.
-    pub(super) singles: Vec<f32>,
+    /// Behind the head: varyings of the three corners, then the derivatives' numerators of each
+    /// differentiated one.
+    pub(super) table: Table,
     back: Vec<bool>,
 }
 
@@ -35,23 +26,14 @@ struct Corner {
 impl Records {
     /// No records yet.
     pub(super) fn new(program: &dyn Program) -> Self {
-        Self {
-            varyings: program.varyings(),
-            differentiated: program.differentiated(),
-            doubles: Vec::new(),
-            singles: Vec::new(),
-            back: Vec::new(),
-        }
+        let (varyings, differentiated) = (program.varyings(), program.differentiated());
+        let table = Table::new(table::HEAD, 3 * (varyings + differentiated));
+        Self { varyings, differentiated, table, back: Vec::new() }
     }
 
     /// Whether the triangle of a record shows its back.
     pub(super) fn is_back(&self, record: u32) -> bool {
         self.back[record as usize]
-    }
-
-    /// Floats of one record.
-    pub(super) fn singles_a_record(&self) -> usize {
-        3 * (self.varyings + self.differentiated)
     }
 
     /// Adds the record of a triangle.
@@ -61,17 +43,13 @@ impl Records {
             NOT_CLIPPED => t.corners().map(|corner| source[corner]),
             piece => t.corners().map(|corner| mix(&source, chunk.clipped[piece as usize][corner])),
         };
-        let [e1, e2] = t.edges_from_corner_0();
-        let origin = [f64::from(t.x[0]), f64::from(t.y[0])];
-        let area = t.doubled_area();
-        let scale = perspective_scale(corners.map(|corner| corner.w), area);
-        self.doubles.extend(origin.iter().chain(&e1).chain(&e2).chain([&area]).chain(&scale));
+        let scale = self.table.begin(t, corners.map(|corner| corner.w));
         for corner in &corners {
-            self.singles.extend(&corner.varyings[..self.varyings]);
+            self.table.extend_singles(&corner.varyings[..self.varyings]);
         }
         for i in 0..self.differentiated {
             let value = corners.map(|corner| f64::from(corner.varyings[i]));
-            self.singles.extend(derivative_numerators(t, scale, value).map(round_to_f32));
+            self.table.extend_derivatives(t, scale, value);
         }
         self.back.push(t.is_back());
     }

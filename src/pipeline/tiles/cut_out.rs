@@ -5,7 +5,7 @@ use super::layers::{AtEqualDepth, Layer, Layers, MOST_SAMPLES, Opaque, TileList,
 use crate::math::View;
 use crate::math::simd::*;
 use crate::pipeline::shade::varyings::Source;
-use crate::pipeline::shade::{self, BLOCK};
+use crate::pipeline::shade::{self, HoleShader};
 use crate::plan::ItemTest;
 use glam::DVec3;
 
@@ -26,22 +26,20 @@ pub fn draw<'a>(
     layers: &mut Layers,
     scratch: &mut shade::Scratch,
 ) {
-    let source = |draw| {
+    let shader = |draw| {
         let ItemTest { item, test } = test(draw);
-        Source::new(item, &test.probe, &[], view, DVec3::ZERO)
+        let source = Source::new(item, &test.probe, &[], view, DVec3::ZERO);
+        HoleShader { source, cutoff: test.cutoff }
     };
     let window = Window::whole(tile.region);
     let mut left = ids;
-    let mut alpha = [0.0; BLOCK];
     while !left.is_empty() {
         // What a cut-out of before hides is not asked: so it does not matter where the list was cut.
         let opaque = Opaque { samples, blocks };
         let taken = layers.gather(level, tile, &opaque, AtEqualDepth::Every, window, left, MOST_SAMPLES);
         left = &left[taken..];
-        layers.in_blocks(tile, source, |layers, draw, source, records, block| {
-            shade::alpha::probe_block(level, block, records, source, scratch, &mut alpha);
-            let cutoff = test(draw).test.cutoff;
-            for (fragment, _) in block.iter().zip(&alpha).filter(|(_, alpha)| **alpha >= cutoff) {
+        layers.shade(level, tile, shader, scratch, |layers, block, out| {
+            for (_, fragment) in (0..).zip(block).filter(|(i, _)| out.discarded >> i & 1 == 0) {
                 let layer = &layers.list[fragment.target as usize];
                 write(samples, layer, layers, tile.side * tile.side);
             }

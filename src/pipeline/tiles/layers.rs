@@ -9,8 +9,8 @@ use super::fragments::{Entry, SampleOrder, shading_point, triangle};
 use crate::math::simd::*;
 use crate::pipeline::geometry::Bins;
 use crate::pipeline::geometry::setup::Triangle;
-use crate::pipeline::shade::varyings::{Records, Source};
-use crate::pipeline::shade::{BLOCK, Fragment};
+use crate::pipeline::shade::{BLOCK, Fragment, Scratch};
+use crate::pipeline::shader::{Outputs, PixelShader, Visible};
 
 /// Samples that may be listed at once: half a megabyte of depths, eight layers of a whole tile at 4
 /// samples a pixel. A document can ask for millions of layers.
@@ -66,7 +66,7 @@ pub struct Layers {
     /// Depths of the seen samples of each layer in turn.
     pub depths: Vec<f32>,
     blocks: BlockDepths,
-    fragments: Vec<Fragment>,
+    batch: Batch,
 }
 
 /// The triangles of a tile.
@@ -87,7 +87,12 @@ impl<'a> TileList<'a> {
     /// The triangle of an id.
     #[must_use]
     pub fn triangle(&self, id: u32) -> &'a Triangle {
-        triangle(self.list[id as usize - 1], self.bins).1
+        self.visible(id).1
+    }
+
+    /// The same, with its chunk.
+    fn visible(&self, id: u32) -> Visible<'a> {
+        triangle(self.list[id as usize - 1], self.bins)
     }
 }
 
@@ -202,55 +207,61 @@ impl Layers {
         taken
     }
 
-    /// Calls `shade` with every layer, up to [`BLOCK`] of one draw at a time: with the draw, what
-    /// `source` says of it, and fragments whose targets are places in [`Layers::list`].
-    pub fn in_blocks<'s>(
+    /// Shades every layer with what `shader` says of its draw. Calls `each` with blocks of fragments, whose
+    /// targets are places in [`Layers::list`] in ascending order, and what became of them.
+    pub fn shade<P: PixelShader>(
         &mut self,
+        level: Level,
         tile: &TileList,
-        source: impl Fn(u32) -> Source<'s>,
-        mut shade: impl FnMut(&Self, u32, &Source, &Records, &[Fragment]),
+        shader: impl Fn(u32) -> P,
+        scratch: &mut Scratch,
+        mut each: impl FnMut(&Self, &[Fragment], &Outputs),
     ) {
-        let mut fragments = std::mem::take(&mut self.fragments);
+        let mut batch = std::mem::take(&mut self.batch);
+        let mut out = Outputs::default();
         let mut at = 0;
         while at < self.list.len() {
             let draw = tile.triangle(self.list[at].id).draw;
-            let source = source(draw);
-            let mut records = Records::new(&source);
-            fragments.clear();
-            self.batch(at, draw, tile, &source, &mut records, &mut fragments);
-            for block in fragments.chunks(BLOCK) {
-                shade(self, draw, &source, &records, block);
+            batch.collect(self, at, draw, tile);
+            let shader = shader(draw);
+            let mut shading = shader.open(&mut batch.ids.iter().map(|&id| tile.visible(id)));
+            for block in batch.fragments.chunks(BLOCK) {
+                shading.shade(level, block, scratch, &mut out);
+                each(self, block, &out);
             }
-            at += fragments.len();
+            at += batch.fragments.len();
         }
-        self.fragments = fragments;
+        self.batch = batch;
     }
+}
 
-    /// The fragments of `draw` from the layer `from` on, [`BATCH`] at most, with their records.
-    fn batch(
-        &self,
-        from: usize,
-        draw: u32,
-        tile: &TileList,
-        source: &Source,
-        records: &mut Records,
-        fragments: &mut Vec<Fragment>,
-    ) {
-        let (mut last, mut count) = (0, 0);
-        for (layer, target) in self.list[from..].iter().zip(from..).take(BATCH) {
-            let (chunk, t) = triangle(tile.list[layer.id as usize - 1], tile.bins);
+/// Layers of one draw as fragments.
+#[derive(Debug, Default)]
+struct Batch {
+    fragments: Vec<Fragment>,
+    /// The triangles of their records.
+    ids: Vec<u32>,
+}
+
+impl Batch {
+    /// Takes the layers of `draw` from the layer `from` on, [`BATCH`] at most.
+    fn collect(&mut self, layers: &Layers, from: usize, draw: u32, tile: &TileList) {
+        self.fragments.clear();
+        self.ids.clear();
+        for (layer, target) in layers.list[from..].iter().zip(from..).take(BATCH) {
+            let t = tile.triangle(layer.id);
             if t.draw != draw {
                 return;
             }
-            if layer.id != last {
-                records.push(source, t, chunk);
-                (last, count) = (layer.id, count + 1);
+            if self.ids.last() != Some(&layer.id) {
+                self.ids.push(layer.id);
             }
+            let record = u32::try_from(self.ids.len() - 1).expect("a batch is small");
             let pixel = usize::from(layer.pixel);
             let corner = tile.region.corner([pixel % tile.side, pixel / tile.side]);
             let [x, y] = shading_point(t, layer.covered, corner, tile.order);
             let target = u32::try_from(target).expect("as many as fit in memory at once");
-            fragments.push(Fragment { record: count - 1, target, x, y });
+            self.fragments.push(Fragment { record, target, x, y });
         }
     }
 }

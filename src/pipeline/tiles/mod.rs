@@ -15,8 +15,9 @@ pub mod layers;
 use super::geometry::Bins;
 use super::geometry::bin::TileGrid;
 use super::samples;
-use super::shade::varyings::{Records, ShadowFrame, Source};
-use super::shade::{self, BLOCK, Lighting};
+use super::shade::varyings::{ShadowFrame, Source};
+use super::shade::{self, BLOCK, Lighting, SurfaceShader};
+use super::shader::{Outputs, PixelShader};
 use super::stats::{Clock, TileTimes};
 use super::work::{Cancelled, Work};
 use super::{resolve, sky};
@@ -125,10 +126,11 @@ pub struct Shared<'a> {
 
 impl<'a> Shared<'a> {
     /// What the triangles of a draw look like.
-    fn source(&self, draw: u32) -> Source<'_> {
+    fn shader(&self, draw: u32) -> SurfaceShader<'_> {
         let draw = &self.draws[draw as usize];
-        let item = &self.items[draw.item as usize];
-        Source::new(item, &draw.surface, &self.frames, self.lighting.view, self.lighting.anchor)
+        let (item, lighting) = (&self.items[draw.item as usize], &self.lighting);
+        let source = Source::new(item, &draw.surface, &self.frames, lighting.view, lighting.anchor);
+        SurfaceShader { source, lighting }
     }
 
     /// What decides on triangles with holes.
@@ -333,26 +335,17 @@ fn draw_tile<P>(
 
 /// Shades every fragment of the tile, draw by draw.
 fn shade_fragments(level: Level, shared: &Shared, scratch: &mut Scratch) {
-    let mut out = [[0.0; BLOCK]; 3];
-    for run in &scratch.fragments.runs {
-        let source = shared.source(run.draw);
-        let mut records = Records::new(&source);
-        for &id in &scratch.fragments.visible[run.first[0]..run.end[0]] {
-            let (chunk, t) = triangle(scratch.list[id as usize - 1], shared.bins);
-            records.push(&source, t, chunk);
-        }
-        for block in scratch.fragments.sorted[run.first[1]..run.end[1]].chunks(BLOCK) {
-            shade::shade_block(
-                level,
-                block,
-                &records,
-                &source,
-                &shared.lighting,
-                &mut scratch.shade,
-                &mut out,
-            );
+    let mut out = Outputs::default();
+    let Scratch { fragments, list, colors, shade, .. } = scratch;
+    for run in &fragments.runs {
+        let shader = shared.shader(run.draw);
+        let visible = fragments.visible[run.first[0]..run.end[0]].iter();
+        let mut visible = visible.map(|&id| triangle(list[id as usize - 1], shared.bins));
+        let mut shading = shader.open(&mut visible);
+        for block in fragments.sorted[run.first[1]..run.end[1]].chunks(BLOCK) {
+            shading.shade(level, block, shade, &mut out);
             for (i, fragment) in block.iter().enumerate() {
-                for (channel, value) in scratch.colors.iter_mut().zip(&out) {
+                for (channel, value) in colors.iter_mut().zip(&out.colors[0]) {
                     channel[fragment.target as usize] = value[i];
                 }
             }

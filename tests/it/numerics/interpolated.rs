@@ -10,7 +10,8 @@ use rasterd::pipeline::geometry::{self, Bins};
 use rasterd::pipeline::samples;
 use rasterd::pipeline::shade::light::LightSource;
 use rasterd::pipeline::shade::varyings::{Records, Source, Varyings, interpolate};
-use rasterd::pipeline::shade::{self, BLOCK, Fragment, Lighting, shade_block};
+use rasterd::pipeline::shade::{self, Fragment, Lighting, SurfaceShader};
+use rasterd::pipeline::shader::{Outputs, PixelShader, Visible};
 use rasterd::plan::Plan;
 use serde_json::{Value, json};
 
@@ -65,13 +66,12 @@ fn inside(t: &Triangle, random: &mut Random) -> Option<[i32; 2]> {
     weights(t, p).iter().all(|w| *w >= 0).then_some(p)
 }
 
-/// Calls `visit(triangle, points, source, records)` for every triangle of the plan, with points inside
-/// of it and a record of it alone.
+/// Calls `visit(triangle, points, source)` for every triangle of the plan, with points inside of it.
 fn visit(
     plan: &Plan,
     random: &mut Random,
     anchor: DVec3,
-    mut visit: impl FnMut(&Triangle, &[[i32; 2]], &Source, &Records),
+    mut visit: impl FnMut(Visible, &[[i32; 2]], Source),
 ) {
     let bins = bins(plan);
     for chunk in &bins.chunks {
@@ -79,11 +79,9 @@ fn visit(
             let draw = &plan.draws[t.draw as usize];
             let item = &plan.items[draw.item as usize];
             let source = Source::new(item, &draw.surface, &[], &plan.view, anchor);
-            let mut records = Records::new(&source);
-            records.push(&source, t, chunk);
             let points: Vec<_> = (0..POINTS).filter_map(|_| inside(t, random)).collect();
             if !points.is_empty() {
-                visit(t, &points, &source, &records);
+                visit((chunk, t), &points, source);
             }
         }
     }
@@ -100,11 +98,12 @@ pub fn look(
     mut check: impl FnMut(&Triangle, [i32; 2], usize, &Varyings),
 ) -> usize {
     let mut looked = 0;
-    visit(plan, random, DVec3::ZERO, |t, points, source, records| {
-        let mut varyings = Varyings::default();
-        interpolate(Level::new(), records, source, &fragments(points), &mut varyings);
+    visit(plan, random, DVec3::ZERO, |visible, points, source| {
+        let (mut records, mut varyings) = (Records::new(&source), Varyings::default());
+        records.push(&source, visible);
+        interpolate(Level::new(), &records, &source, &fragments(points), &mut varyings);
         for (lane, &point) in points.iter().enumerate() {
-            check(t, point, lane, &varyings);
+            check(visible.1, point, lane, &varyings);
             looked += 1;
         }
     });
@@ -121,12 +120,13 @@ pub fn shaded(
     let anchor = shade::anchor(plan.scene.bounds(plan.t), &plan.view);
     let lights = plan.lights.iter().map(|light| LightSource::new(light, &plan.view, anchor)).collect();
     let lighting = Lighting { ambient: plan.ambient, lights, maps: &[], view: &plan.view, anchor };
-    let (mut scratch, mut out, mut looked) = (shade::Scratch::default(), [[0.0; BLOCK]; 3], 0);
-    visit(plan, random, anchor, |t, points, source, records| {
-        let fragments = fragments(points);
-        shade_block(Level::new(), &fragments, records, source, &lighting, &mut scratch, &mut out);
+    let (mut scratch, mut out, mut looked) = (shade::Scratch::default(), Outputs::default(), 0);
+    visit(plan, random, anchor, |visible, points, source| {
+        let shader = SurfaceShader { source, lighting: &lighting };
+        let mut shading = shader.open(&mut [visible].into_iter());
+        shading.shade(Level::new(), &fragments(points), &mut scratch, &mut out);
         for (lane, &point) in points.iter().enumerate() {
-            check(t, point, out.map(|channel| channel[lane]));
+            check(visible.1, point, [0, 1, 2].map(|channel| out.colors[0][channel][lane]));
             looked += 1;
         }
     });

@@ -137,7 +137,7 @@ fn normals_that_cancel_give_way_to_the_geometric_one() {
     let draw = &plan.draws[0];
     let source = Source::new(&plan.items[0], &draw.surface, &[], &plan.view, DVec3::ZERO);
     let mut records = Records::new(&source);
-    records.push(&source, t, chunk);
+    records.push(&source, (chunk, t));
     let centre =
         Fragment { record: 0, target: 0, x: t.x.iter().sum::<i32>() / 3, y: t.y.iter().sum::<i32>() / 3 };
     let mut varyings = Varyings::default();

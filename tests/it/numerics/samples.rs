@@ -144,7 +144,7 @@ fn worst_excess(item: &Item, view: &View, samples: u32) -> (f64, usize) {
         let mut records = Records::new(&source);
         let drawn = fragments.visible.iter().map(|&id| triangle(scratch.list()[id as usize - 1], &bins));
         let drawn: Vec<_> = drawn.collect();
-        drawn.iter().for_each(|(chunk, t)| records.push(&source, t, chunk));
+        drawn.iter().for_each(|&visible| records.push(&source, visible));
         for block in fragments.sorted.chunks(BLOCK) {
             let mut varyings = Varyings::default();
             varyings::interpolate(level, &records, &source, block, &mut varyings);

@@ -1,8 +1,9 @@
 //! Interpolation: records and fragments in, attributes of a block out.
 
-use super::records::{AREA, EDGES, ORIGIN, Records, SCALE, SHADOW};
+use super::records::{Layout, Records, SHADOW};
 use super::{Receivers, Source};
 use crate::math::simd::*;
+use crate::pipeline::shade::table::{Lanes, Weights};
 use crate::pipeline::shade::texture::Coordinates;
 use crate::pipeline::shade::{BLOCK, Fragment};
 
@@ -42,65 +43,6 @@ impl Default for Varyings {
     }
 }
 
-/// Eight lanes' view of the records: either all of one triangle, or each of its own.
-struct Lanes<'a> {
-    records: &'a Records,
-    /// Record of each lane.
-    index: [usize; LANES],
-    uniform: bool,
-}
-
-impl Lanes<'_> {
-    #[inline(always)]
-    fn single<S: Simd>(&self, simd: S, field: usize) -> f32x8<S> {
-        let stride = self.records.layout.singles;
-        let all = &self.records.singles;
-        if self.uniform {
-            f32x8::splat(simd, all[self.index[0] * stride + field])
-        } else {
-            f32x8::from_fn(
-                simd,
-                #[inline(always)]
-                |lane| all[self.index[lane] * stride + field],
-            )
-        }
-    }
-
-    #[inline(always)]
-    fn double<S: Simd>(&self, simd: S, field: usize) -> f64x8<S> {
-        let stride = self.records.layout.doubles;
-        let all = &self.records.doubles;
-        if self.uniform {
-            f64x8::splat(simd, all[self.index[0] * stride + field])
-        } else {
-            f64x8::from_fn(
-                simd,
-                #[inline(always)]
-                |lane| all[self.index[lane] * stride + field],
-            )
-        }
-    }
-
-    /// Weighted mean of the values of three corners that lie `step` fields apart.
-    #[inline(always)]
-    fn mix<S: Simd>(&self, simd: S, weights: &[f32x8<S>; 3], field: usize, step: usize) -> f32x8<S> {
-        let corner = always(
-            #[inline(always)]
-            |i: usize| weights[i] * self.single(simd, field + i * step),
-        );
-        (corner(0) + corner(1)) + corner(2)
-    }
-
-    #[inline(always)]
-    fn mix3<S: Simd>(&self, simd: S, weights: &[f32x8<S>; 3], field: usize) -> Vec3x8<S> {
-        Vec3x8 {
-            x: self.mix(simd, weights, field, 3),
-            y: self.mix(simd, weights, field + 1, 3),
-            z: self.mix(simd, weights, field + 2, 3),
-        }
-    }
-}
-
 /// Interpolates the attributes of up to [`BLOCK`] fragments of one draw.
 pub fn interpolate(
     level: Level,
@@ -110,80 +52,35 @@ pub fn interpolate(
     out: &mut Varyings,
 ) {
     out.shadow.resize(source.shadows.len(), Receivers::default());
-    dispatch!(level, simd => interpolate_kernel(simd, records, source, fragments, out));
-}
-
-#[inline(always)]
-fn interpolate_kernel<S: Simd>(
-    simd: S,
-    records: &Records,
-    source: &Source,
-    fragments: &[Fragment],
-    out: &mut Varyings,
-) {
-    for (group, at) in fragments.chunks(LANES).zip((0..).step_by(LANES)) {
-        let lane = always(
-            #[inline(always)]
-            |i: usize| &group[i.min(group.len() - 1)],
-        );
-        let index: [usize; LANES] = std::array::from_fn(|i| lane(i).record as usize);
-        let uniform = index.iter().all(|&i| i == index[0]);
-        let lanes = Lanes { records, index, uniform };
-        let x = f64x8::from_fn(
-            simd,
-            #[inline(always)]
-            |i| f64::from(lane(i).x),
-        );
-        let y = f64x8::from_fn(
-            simd,
-            #[inline(always)]
-            |i| f64::from(lane(i).y),
-        );
-        interpolate_eight(simd, &lanes, source, x, y, out, at);
-    }
+    dispatch!(level, simd => records.table.for_each_eight(simd, fragments, always(
+        #[inline(always)]
+        |lanes: &Lanes, weights: &Weights<_>, at: usize| {
+            interpolate_eight(simd, lanes, &records.layout, source, weights, out, at);
+        },
+    )));
 }
 
 #[inline(always)]
 fn interpolate_eight<S: Simd>(
     simd: S,
     lanes: &Lanes,
+    layout: &Layout,
     source: &Source,
-    x: f64x8<S>,
-    y: f64x8<S>,
+    weights: &Weights<S>,
     out: &mut Varyings,
     at: usize,
 ) {
-    let layout = &lanes.records.layout;
-    // Edge functions relative to corner 0: whole numbers below 2⁵⁰, exact.
-    let (dx, dy) = (x - lanes.double(simd, ORIGIN), y - lanes.double(simd, ORIGIN + 1));
-    let edge = always(
-        #[inline(always)]
-        |i: usize| dx * lanes.double(simd, EDGES + 2 * i) + dy * lanes.double(simd, EDGES + 2 * i + 1),
-    );
-    let (e1, e2) = (edge(0), edge(1));
-    let e0 = lanes.double(simd, AREA) - e1 - e2;
-    let weight = always(
-        #[inline(always)]
-        |i: usize, e: f64x8<S>| e * lanes.double(simd, SCALE + i),
-    );
-    let l = [weight(0, e0), weight(1, e1), weight(2, e2)];
-    let sum = (l[0] + l[1]) + l[2];
-    let share = f64x8::splat(simd, 1.0) / sum;
-    let weights = [narrow(l[0] * share), narrow(l[1] * share), narrow(l[2] * share)];
-
     for (map, receivers) in out.shadow.iter_mut().enumerate() {
         for (c, plane) in receivers.plane.iter_mut().enumerate() {
             lanes.single(simd, layout.shadow_planes + 3 * map + c).store_slice(&mut plane[at..at + LANES]);
         }
         let field = SHADOW + 9 * map;
         for (c, coordinate) in receivers.place.iter_mut().enumerate() {
-            let difference = e1 * lanes.double(simd, field + 3 + c) + e2 * lanes.double(simd, field + 6 + c);
-            narrow(lanes.double(simd, field + c) + difference * share)
-                .store_slice(&mut coordinate[at..at + LANES]);
+            narrow(lanes.mix_wide(simd, weights, field + c, 3)).store_slice(&mut coordinate[at..at + LANES]);
         }
     }
     if source.surface.needs_normal() {
-        let n = lanes.mix3(simd, &weights, layout.normal);
+        let n = lanes.mix3(simd, weights, layout.normal);
         let plane = Vec3x8 {
             x: lanes.single(simd, layout.normal + 9),
             y: lanes.single(simd, layout.normal + 10),
@@ -194,44 +91,36 @@ fn interpolate_eight<S: Simd>(
         plane.select(cancelled, n.normalize()).store(&mut out.normal, at);
     }
     if source.surface.lit {
-        let position = lanes.mix3(simd, &weights, layout.position);
+        let position = lanes.mix3(simd, weights, layout.position);
         position.store(&mut out.position, at);
         if !source.shadows.is_empty() {
-            let lift = lift_to_round(simd, lanes, &weights, position);
+            let lift = lift_to_round(simd, lanes, layout, weights, position);
             lift_receivers(simd, source, lift, out, at);
         }
     }
     if source.surface.relief.is_some() {
-        lanes.mix3(simd, &weights, layout.tangent).store(&mut out.along_u, at);
-        lanes.mix3(simd, &weights, layout.tangent + 9).store(&mut out.along_v, at);
+        lanes.mix3(simd, weights, layout.tangent).store(&mut out.along_u, at);
+        lanes.mix3(simd, weights, layout.tangent + 9).store(&mut out.along_v, at);
     }
     if source.surface.needs_uv_per_world() {
         for c in 0..2 {
-            let per_world = lanes.mix(simd, &weights, layout.uv_per_world + c, 2);
+            let per_world = lanes.mix(simd, weights, layout.uv_per_world + c, 2);
             per_world.store_slice(&mut out.uv_per_world[c][at..at + LANES]);
         }
     }
     if source.surface.vertex_colors {
-        lanes.mix3(simd, &weights, layout.color).store(&mut out.color, at);
+        lanes.mix3(simd, weights, layout.color).store(&mut out.color, at);
     }
     if source.surface.needs_uv() {
-        let depth = narrow(sum);
-        let squared = depth * depth;
-        let (fx, fy) = (narrow(dx), narrow(dy));
         for c in 0..2 {
-            let place = layout.uv_place + c;
-            let difference = e1 * lanes.double(simd, place + 2) + e2 * lanes.double(simd, place + 4);
-            let mut coordinate = lanes.double(simd, place) + difference * share;
+            let mut coordinate = lanes.mix_wide(simd, weights, layout.uv_place + c, 2);
             if source.surface.periodic_uv {
                 // Without its whole turns where they change nothing (an even number: a mirrored
                 // texture repeats every second unit), so that f32 keeps the digits that count.
                 coordinate -= (coordinate * 0.5).floor() * 2.0;
             }
             narrow(coordinate).store_slice(&mut out.texture.uv[c][at..at + LANES]);
-            let field = layout.uv + 3 * c;
-            let cross = lanes.single(simd, field + 2);
-            let along_x = (lanes.single(simd, field) + cross * fy) / squared;
-            let along_y = (lanes.single(simd, field + 1) - cross * fx) / squared;
+            let [along_x, along_y] = lanes.derivatives(simd, weights, layout.uv + 3 * c);
             along_x.store_slice(&mut out.texture.per_pixel[c][at..at + LANES]);
             along_y.store_slice(&mut out.texture.per_pixel[2 + c][at..at + LANES]);
         }
@@ -244,11 +133,16 @@ fn interpolate_eight<S: Simd>(
 /// a triangle's plane, long before the rounded surface turns away. Source: J. Hanika, "Hacking the
 /// Shadow Terminator", Ray Tracing Gems II, 2021.
 #[inline(always)]
-fn lift_to_round<S: Simd>(simd: S, lanes: &Lanes, weights: &[f32x8<S>; 3], position: Vec3x8<S>) -> f32x8<S> {
-    let layout = &lanes.records.layout;
+fn lift_to_round<S: Simd>(
+    simd: S,
+    lanes: &Lanes,
+    layout: &Layout,
+    weights: &Weights<S>,
+    position: Vec3x8<S>,
+) -> f32x8<S> {
     let zero = f32x8::splat(simd, 0.0);
     let mut lift = zero;
-    for (i, &weight) in weights.iter().enumerate() {
+    for (i, &weight) in weights.corners.iter().enumerate() {
         let field = always(
             #[inline(always)]
             |at: usize| Vec3x8 {

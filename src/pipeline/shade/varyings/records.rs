@@ -3,9 +3,9 @@
 use super::corners::{CornerFrames, Corners};
 use super::{RayFrame, ShadowFrame, Source};
 use crate::math::{Projection, round_to_f32};
-use crate::pipeline::geometry::bin::Chunk;
 use crate::pipeline::geometry::setup::Triangle;
-use crate::pipeline::shade::weights::{derivative_numerators, perspective_scale};
+use crate::pipeline::shade::table::{self, Table};
+use crate::pipeline::shader::Visible;
 use crate::plan::{Relief, Surface};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
@@ -60,37 +60,28 @@ impl Layout {
     }
 }
 
-// The f64 part of a record.
-pub(super) const ORIGIN: usize = 0;
-pub(super) const EDGES: usize = 2;
-pub(super) const AREA: usize = 6;
-pub(super) const SCALE: usize = 7;
-pub(super) const SHADOW: usize = 10;
+/// Where the f64 part goes on behind its head: what each light's map is asked with.
+pub(super) const SHADOW: usize = table::HEAD;
 
 /// Records of the visible triangles of one draw in one tile.
 #[derive(Debug)]
 pub struct Records {
     pub(super) layout: Layout,
-    pub(super) doubles: Vec<f64>,
-    pub(super) singles: Vec<f32>,
+    pub(super) table: Table,
 }
 
 impl Records {
     /// No records yet.
     #[must_use]
     pub fn new(source: &Source) -> Self {
-        Self {
-            layout: Layout::new(source.surface, source.shadows.len()),
-            doubles: Vec::new(),
-            singles: Vec::new(),
-        }
+        let layout = Layout::new(source.surface, source.shadows.len());
+        Self { layout, table: Table::new(layout.doubles, layout.singles) }
     }
 
-    /// Adds the record of a triangle of `chunk`.
-    pub fn push(&mut self, source: &Source, t: &Triangle, chunk: &Chunk) {
+    /// Adds the record of a triangle.
+    pub fn push(&mut self, source: &Source, (chunk, t): Visible) {
         let corners = Corners::new(source, t, chunk);
-        let scale = perspective_scale(homogeneous(source, &corners), t.doubled_area());
-        self.push_edges(t, scale);
+        let scale = self.table.begin(t, homogeneous(source, &corners));
         let shadow_normal = corners.geometric_normal;
         for frame in source.shadows {
             self.push_shadow(source, frame, &corners, shadow_normal, scale);
@@ -101,7 +92,7 @@ impl Records {
             for n in normals.into_iter().chain([corners.geometric_normal]) {
                 self.push_vec3((n * facing).as_vec3());
             }
-            self.singles.push(round_to_f32(rise(&corners, &normals)));
+            self.table.extend_singles(&[round_to_f32(rise(&corners, &normals))]);
         }
         if source.surface.lit {
             corners.positions.iter().for_each(|p| self.push_vec3((p - source.anchor).as_vec3()));
@@ -126,22 +117,12 @@ impl Records {
             self.push_vec3((along * facing).as_vec3());
         }
         if relief.heights.is_some() {
-            self.singles.extend(frames.per_world.iter().flat_map(|per| per.as_vec2().to_array()));
+            frames.per_world.iter().for_each(|per| self.table.extend_singles(&per.as_vec2().to_array()));
         }
     }
 
     fn push_vec3(&mut self, v: Vec3) {
-        self.singles.extend_from_slice(&v.to_array());
-    }
-
-    /// Corner 0, the steps of the edge functions that vanish there, the area, and the factor of each
-    /// edge function that makes it a perspective weight.
-    fn push_edges(&mut self, t: &Triangle, scale: [f64; 3]) {
-        let [e1, e2] = t.edges_from_corner_0();
-        let origin = [f64::from(t.x[0]), f64::from(t.y[0])];
-        self.doubles.extend(origin.iter().chain(&e1).chain(&e2));
-        self.doubles.push(t.doubled_area());
-        self.doubles.extend(scale);
+        self.table.extend_singles(&v.to_array());
     }
 
     /// What a light sees: the place of corner 0, how much those of corners 1 and 2 differ from it, times
@@ -170,7 +151,7 @@ impl Records {
         let clearance = DVec3::new(0.0, 0.0, clearance);
         let [s0, s1, s2] = corners.positions.map(|p| frame.linear * (p + base) + clearance);
         for v in [s0, (s1 - s0) * scale[1], (s2 - s0) * scale[2]] {
-            self.doubles.extend_from_slice(&v.to_array());
+            self.table.extend_doubles(&v.to_array());
         }
         self.push_vec3(plane.as_vec3());
     }
@@ -179,11 +160,10 @@ impl Records {
     /// numerators of their screen derivatives.
     fn push_uvs(&mut self, uv: &[DVec2; 3], t: &Triangle, scale: [f64; 3]) {
         for v in [uv[0], (uv[1] - uv[0]) * scale[1], (uv[2] - uv[0]) * scale[2]] {
-            self.doubles.extend_from_slice(&v.to_array());
+            self.table.extend_doubles(&v.to_array());
         }
         for axis in 0..2 {
-            let numerators = derivative_numerators(t, scale, uv.map(|uv| uv[axis]));
-            self.singles.extend(numerators.map(round_to_f32));
+            self.table.extend_derivatives(t, scale, uv.map(|uv| uv[axis]));
         }
     }
 }

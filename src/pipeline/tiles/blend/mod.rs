@@ -10,7 +10,7 @@ mod composite;
 use super::Shared;
 use super::fragments::Fragments;
 use super::layers::{AtEqualDepth, Layers, MOST_SAMPLES, Opaque, TileList, Window};
-use crate::pipeline::shade::{self, BLOCK};
+use crate::pipeline::shade;
 use crate::pipeline::stats::{Clock, TileTimes};
 use crate::pipeline::work::Work;
 use composite::{Over, Stacks};
@@ -103,15 +103,14 @@ impl Blend<'_> {
         let Scratch { layers, over, .. } = &mut *self.scratch;
         over.clear();
         self.times.shaded += layers.list.len() as u64;
-        let (mut color, mut alpha) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
-        layers.in_blocks(
+        layers.shade(
+            level,
             self.tile,
-            |draw| shared.source(draw),
-            |_, _, source, records, block| {
-                let shading = &mut *self.shading;
-                shade::shade_block(level, block, records, source, &shared.lighting, shading, &mut color);
-                shade::alpha::of_shaded(level, source, block.len(), shading, &mut alpha);
-                over.extend((0..block.len()).map(|i| Over::new(color.map(|channel| channel[i]), alpha[i])));
+            |draw| shared.shader(draw),
+            self.shading,
+            |_, block, out| {
+                let [red, green, blue, alpha] = &out.colors[0];
+                over.extend((0..block.len()).map(|i| Over::new([red[i], green[i], blue[i]], alpha[i])));
             },
         );
     }
