@@ -1,10 +1,9 @@
 //! Resolve: the samples of a shared pixel to its colour.
 
-use super::shade::BRIGHTEST;
 use super::tiles::fragments::{Fragments, SharedPixel};
 
 /// Fills the places of all pixels that more than one surface share, or none covers: with the mean of
-/// their samples. Uncovered samples show `sky`, as bright as radiance gets.
+/// their samples. Uncovered samples show `sky`.
 pub fn resolve(
     fragments: &Fragments,
     sky: &[Vec<f32>; 3],
@@ -15,13 +14,13 @@ pub fn resolve(
     let own = side * side;
     for (channel, sky) in colors.iter_mut().zip(sky) {
         for &pixel in &fragments.sky {
-            channel[pixel as usize] = sky[pixel as usize].min(BRIGHTEST);
+            channel[pixel as usize] = sky[pixel as usize];
         }
     }
     for shared in &fragments.shared {
         for (channel, sky) in colors.iter_mut().zip(sky) {
             let pixel = shared.pixel as usize;
-            let mut values = values(fragments, shared, &channel[own..], sky[pixel].min(BRIGHTEST));
+            let mut values = values(fragments, shared, &channel[own..], sky[pixel]);
             channel[pixel] = mean(&mut values[..samples as usize]);
         }
     }

@@ -8,6 +8,7 @@ mod filter;
 mod panorama;
 pub mod rays;
 
+use super::shade::BRIGHTEST;
 use super::tiles::cover::Region;
 use crate::math::simd::*;
 use crate::math::{Projection, View, approx, round_to_f32};
@@ -67,7 +68,8 @@ impl Background {
         matches!(self, Self::Transparent)
     }
 
-    /// Writes the colours of `pixels` (`y · side + x` within the tile) to their places.
+    /// Writes the colours of `pixels` (`y · side + x` within the tile) to their places, as bright as radiance
+    /// gets.
     pub fn draw(&self, level: Level, pixels: &[u32], region: &Region, side: usize, out: &mut [Vec<f32>; 3]) {
         if !pixels.is_empty() {
             dispatch!(level, simd => self.draw_kernel(simd, pixels, region, side, out));
@@ -85,7 +87,7 @@ impl Background {
     ) {
         let place = Place { region, side };
         match self {
-            Self::Color(color) => fill(pixels, *color, out),
+            Self::Color(color) => fill(pixels, color.min(Vec3::splat(BRIGHTEST)), out),
             Self::Transparent => fill(pixels, Vec3::ZERO, out),
             Self::Gradient(gradient) => place.draw(
                 simd,
@@ -180,10 +182,15 @@ impl Place<'_> {
                 |lane| centre(self.region.origin[1], pixel(lane) / self.side),
             );
             let color = radiance(x, y);
+            let brightest = f32x8::splat(simd, BRIGHTEST);
+            let color = [color.x, color.y, color.z].map(always(
+                #[inline(always)]
+                |channel| min(channel, brightest),
+            ));
             for (lane, &pixel) in group.iter().enumerate() {
-                out[0][pixel as usize] = color.x[lane];
-                out[1][pixel as usize] = color.y[lane];
-                out[2][pixel as usize] = color.z[lane];
+                for (channel, value) in out.iter_mut().zip(color) {
+                    channel[pixel as usize] = value[lane];
+                }
             }
         }
     }

@@ -56,6 +56,19 @@ fn radiance_is_finite_whatever_shines() {
 }
 
 #[test]
+fn radiance_is_finite_through_glass() {
+    let mut document = half([1e18, 1e-30, 7e4], json!({ "type": "color", "color": [1e18, 65504, 1] }), 4);
+    document["materials"]["glass"] = json!({ "opacity": 0.25, "shading": "unlit", "diffuse": [0, 0, 0] });
+    document["instances"]["glass"] =
+        json!({ "mesh": "m", "material": "glass", "translation": [0, 0, 0.5], "scale": [3, 1, 1] });
+    let (pixels, _) = radiance(&document);
+    assert!(pixels.iter().flatten().all(|value| (0.0..=65504.0).contains(value)));
+    assert_eq!(pixels[0][0], 65504.0 * 0.75);
+    // Through the pixels that the edge behind the glass goes through.
+    assert!(pixels[35][0] <= 65504.0 * 0.75 && pixels[35][2] > pixels[34][2].min(pixels[36][2]));
+}
+
+#[test]
 fn radiance_before_a_transparent_background_is_straight() {
     let (pixels, opaque) = radiance(&half([2.5, 0.25, 0.0], json!({ "type": "transparent" }), 4));
     assert!(!opaque);
