@@ -34,7 +34,7 @@ pub fn pick(plan: &Plan, x: u32, y: u32, work: &Work) -> Result<Option<Hit>, Can
     scratch.find_visible(work.level, &bins, place, plan.samples);
     let tests = AlphaTests { draws: &plan.draws, items: &plan.items, view: &plan.view };
     let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
-    scratch.find_cut_outs(work.level, &bins, place, &order, &tests);
+    scratch.find_cut_outs(work, &bins, place, &order, &tests);
     let within = [x, y].map(|c| (c & ((1 << shift) - 1)) as usize);
     let Some(seen) = scratch.seen((within[1] << shift) + within[0], &bins) else { return Ok(None) };
     let screen = Region::of_tile(&bins.grid, place[0], place[1]).centre(within);

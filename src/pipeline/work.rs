@@ -44,7 +44,7 @@ impl Work<'_> {
     /// long one.
     ///
     /// # Errors
-    /// [`Cancelled`] if the flag was set before the last item was taken.
+    /// [`Cancelled`] if the flag was set before the last item was served.
     pub fn map<T, R, C>(
         &self,
         items: Vec<T>,

@@ -65,7 +65,7 @@ fn find_seen(plan: &Plan, bins: &Bins, place: [u32; 2], work: &Work, scratch: &m
     let tests = AlphaTests { draws: &plan.draws, items: &plan.items, view: &plan.view };
     let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
     scratch.find_visible(work.level, bins, place, 1);
-    scratch.find_cut_outs(work.level, bins, place, &order, &tests);
+    scratch.find_cut_outs(work, bins, place, &order, &tests);
 }
 
 /// 65535 · (z − near) / (far − near) of the view-space distance z; 65535 for the background.

@@ -57,7 +57,7 @@ impl DepthMap {
             .filter(|&(column, row)| bins.chunks.iter().any(|chunk| !chunk.tile(column, row).is_empty()))
             .collect();
         let drawn = work.map(touched.clone(), Scratch::default, |scratch, place| {
-            draw_tile(work.level, face, &bins, place, scratch)
+            draw_tile(work, face, &bins, place, scratch)
         })?;
         let mut tiles: Vec<Option<Box<Tile>>> = (0..grid.tiles()).map(|_| None).collect();
         for (&(column, row), tile) in touched.iter().zip(drawn) {
@@ -133,7 +133,7 @@ struct Scratch {
 
 /// Draws the tile at (column, row): opaque casters, then those with holes.
 fn draw_tile(
-    level: Level,
+    work: &Work,
     face: &Face,
     bins: &Bins,
     (column, row): (u32, u32),
@@ -145,7 +145,7 @@ fn draw_tile(
     blocks.clear(TILE_SIDE);
     list.clear();
     let region = Region::of_tile(&bins.grid, column, row);
-    dispatch!(level, simd => {
+    dispatch!(work.level, simd => {
         let mut target = DepthTarget { depth: &mut samples.depth };
         for (number, chunk) in (0..).zip(&bins.chunks) {
             for &index in chunk.tile(column, row) {
@@ -166,7 +166,7 @@ fn draw_tile(
         let order = SampleOrder { pattern, nearest: &[0] };
         let tile = TileList { bins, list, region: &region, side: TILE_SIDE, order: &order };
         let test = |draw| face.test(draw);
-        cut_out::draw(level, &tile, ids, test, &face.view, &mut samples, blocks, layers, shade);
+        cut_out::draw(work, &tile, ids, test, &face.view, &mut samples, blocks, layers, shade);
     }
     samples.depth.into_boxed_slice().try_into().expect("a tile of texels")
 }

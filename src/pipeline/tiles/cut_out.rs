@@ -3,9 +3,9 @@
 use super::cover::{BlockDepths, Visibility};
 use super::layers::{AtEqualDepth, Layer, Layers, MOST_SAMPLES, Opaque, TileList, Window};
 use crate::math::View;
-use crate::math::simd::*;
 use crate::pipeline::shade::varyings::Source;
 use crate::pipeline::shade::{self, HoleShader};
+use crate::pipeline::work::Work;
 use crate::plan::ItemTest;
 use glam::DVec3;
 
@@ -13,10 +13,10 @@ use glam::DVec3;
 /// what decides on those of a draw.
 ///
 /// The test is made once a triangle and pixel, at its shading point, and holds for all samples that the
-/// triangle covers there.
+/// triangle covers there. Stops early when the frame is cancelled.
 #[expect(clippy::too_many_arguments, reason = "a tile, its triangles, what they look like, and buffers")]
 pub fn draw<'a>(
-    level: Level,
+    work: &Work,
     tile: &TileList,
     ids: &[u32],
     test: impl Fn(u32) -> ItemTest<'a>,
@@ -33,12 +33,12 @@ pub fn draw<'a>(
     };
     let window = Window::whole(tile.region);
     let mut left = ids;
-    while !left.is_empty() {
+    while !left.is_empty() && work.check().is_ok() {
         // What a cut-out of before hides is not asked: so it does not matter where the list was cut.
         let opaque = Opaque { samples, blocks };
-        let taken = layers.gather(level, tile, &opaque, AtEqualDepth::Every, window, left, MOST_SAMPLES);
+        let taken = layers.gather(work.level, tile, &opaque, AtEqualDepth::Every, window, left, MOST_SAMPLES);
         left = &left[taken..];
-        layers.shade(level, tile, shader, scratch, |layers, block, out| {
+        layers.shade(work.level, tile, shader, scratch, |layers, block, out| {
             for (_, fragment) in (0..).zip(block).filter(|(i, _)| out.discarded >> i & 1 == 0) {
                 let layer = &layers.list[fragment.target as usize];
                 write(samples, layer, layers, tile.side * tile.side);

@@ -187,7 +187,7 @@ impl Scratch {
     /// Finds what samples see of the triangles with holes of the tile that [`Scratch::find_visible`] left.
     pub fn find_cut_outs(
         &mut self,
-        level: Level,
+        work: &Work,
         bins: &Bins,
         place: [u32; 2],
         order: &SampleOrder,
@@ -200,7 +200,7 @@ impl Scratch {
         let tile =
             TileList { bins, list: &self.list, region: &region, side: 1 << bins.grid.tile_shift, order };
         cut_out::draw(
-            level,
+            work,
             &tile,
             &self.cut_outs,
             |draw| tests.of(draw),
@@ -303,7 +303,7 @@ fn draw_tile<P>(
     let region = Region::of_tile(grid, tile.place[0], tile.place[1]);
 
     scratch.find_visible(level, shared.bins, tile.place, shared.samples);
-    scratch.find_cut_outs(level, shared.bins, tile.place, order, &shared.tests());
+    scratch.find_cut_outs(work, shared.bins, tile.place, order, &shared.tests());
     scratch.fragments.collect(level, &scratch.samples, &region, side, order, &scratch.list, shared.bins);
     times.raster = clock.lap();
 
