@@ -49,6 +49,16 @@ pub fn max<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
     a.simd_gt(b).select(a, b)
 }
 
+/// The numbers of the bits that are set in a mask, the lowest first.
+#[inline(always)]
+pub fn set_bits(mut mask: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lowest = mask.trailing_zeros();
+        mask &= mask.wrapping_sub(1);
+        (lowest < u64::BITS).then_some(lowest as usize)
+    })
+}
+
 /// Three vectors of eight: eight points, directions or colours.
 #[derive(Clone, Copy)]
 pub struct Vec3x8<S: Simd> {

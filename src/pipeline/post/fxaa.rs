@@ -77,7 +77,7 @@ impl RowPass for FindEdges<'_> {
                 let most = max(max(max(north[i], south[i]), max(west[i], east[i])), centre[i]);
                 let least = min(min(min(north[i], south[i]), min(west[i], east[i])), centre[i]);
                 let needed = max(most * EDGE_SHARE, f32x8::splat(simd, EDGE_MIN));
-                for lane in bits((most - least).simd_ge(needed).to_bitmask()) {
+                for lane in set_bits((most - least).simd_ge(needed).to_bitmask()) {
                     let at = i * LANES + lane;
                     if x + at < self.width {
                         out[at] = edge::mix(&luma, x + at, y).code();
@@ -103,7 +103,7 @@ impl RowPass for Blend<'_> {
         out.copy_from_slice(self.from.row(y));
         for (x, codes) in (0..).step_by(LANES).zip(self.mixes.row(y).chunks_exact(LANES)) {
             let none = f32x8::splat(simd, 0.0);
-            for lane in bits(f32x8::from_slice(simd, codes).simd_gt(none).to_bitmask()) {
+            for lane in set_bits(f32x8::from_slice(simd, codes).simd_gt(none).to_bitmask()) {
                 out[x + lane] = self.blended(Mix::from_code(codes[lane]), x + lane, y);
             }
         }
@@ -122,13 +122,4 @@ impl Blend<'_> {
             Some(_) => 0.0,
         }
     }
-}
-
-/// Places of the bits that are set, from the lowest.
-fn bits(mut mask: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lowest = (mask != 0).then(|| mask.trailing_zeros() as usize)?;
-        mask &= mask - 1;
-        Some(lowest)
-    })
 }

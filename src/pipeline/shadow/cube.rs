@@ -9,8 +9,9 @@ mod receiver;
 
 use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
+use super::penumbra::{Light, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
-use super::{HALF_TEXEL, PCF_TAPS, Verdict, bits, sum_of_lanes};
+use super::{HALF_TEXEL, PCF_TAPS};
 use crate::math::round_to_f32;
 use crate::math::simd::*;
 use crate::pipeline::shade::{BLOCK, varyings::Receivers};
@@ -71,8 +72,18 @@ type Pyramids = [Option<Pyramid>; 6];
 /// receivers pass it.
 const LARGEST_OFFSET: f64 = 0.25;
 
-/// How often the search for blockers is narrowed to what the nearest caster below it demands.
-const NARROWINGS: usize = 3;
+/// A cube and its pyramids.
+struct Maps<'a> {
+    cube: &'a CubeMap,
+    pyramids: &'a Pyramids,
+}
+
+/// A light that is no point. Heights are ratios: how many times as far from the light the receiver is as
+/// the blocker.
+struct Soft<'a> {
+    maps: Maps<'a>,
+    size: &'a SoftKernel,
+}
 
 impl CubeMap {
     /// Draws the faces of `pass`.
@@ -115,14 +126,16 @@ impl CubeMap {
             match &self.filter {
                 CubeFilter::Hard => self.hard(simd, &lifted).store_slice(out),
                 CubeFilter::Pcf { pyramids, disc, kernel } => {
-                    for lane in bits(asked) {
+                    let maps = Maps { cube: self, pyramids };
+                    for lane in set_bits(asked) {
                         let receiver = lifted.lane(lane);
-                        out[lane] = self.filtered(simd, pyramids, disc, &receiver, &kernel.around(&receiver));
+                        out[lane] = filtered(simd, &maps, disc, &receiver, &kernel.around(&receiver));
                     }
                 }
                 CubeFilter::Pcss { pyramids, search, filter, size } => {
-                    for lane in bits(asked) {
-                        out[lane] = self.soft(simd, pyramids, search, filter, &lifted.lane(lane), size);
+                    let light = Soft { maps: Maps { cube: self, pyramids }, size };
+                    for lane in set_bits(asked) {
+                        out[lane] = soft(simd, &light, search, filter, &lifted.lane(lane));
                     }
                 }
             }
@@ -163,103 +176,44 @@ impl CubeMap {
         depth * (spot.distance * scale)
     }
 
-    /// The part of the kernel's taps that is lit: exactly 1 if all are, exactly 0 if none is.
+    /// The texels between tangents to the right and upwards, and a hair more than the rounding of a tap.
     #[inline(always)]
-    fn filtered<S: Simd>(
-        &self,
-        simd: S,
-        pyramids: &Pyramids,
-        disc: &Disc,
-        receiver: &Receiver,
-        kernel: &Kernel,
-    ) -> f32 {
-        match kernel.verdict(receiver, &self.lens, self.range_under(pyramids, receiver, kernel)) {
-            Verdict::Lit => 1.0,
-            Verdict::Dark => 0.0,
-            Verdict::Mixed => self.lit_part(simd, disc, receiver, kernel),
+    fn texels_between(&self, [right, up]: [[f32; 2]; 2]) -> TexelBox {
+        const HAIR: f32 = 1.0 / 64.0;
+        let (focal_length, corner) = (self.lens.focal_length, float(self.resolution) * 0.5);
+        let x = [right[0] * focal_length + corner - HAIR, right[1] * focal_length + corner + HAIR];
+        let y = [corner - up[1] * focal_length - HAIR, corner - up[0] * focal_length + HAIR];
+        TexelBox::between(x, y, self.resolution)
+    }
+}
+
+impl Taps for Maps<'_> {
+    type Receiver = Receiver;
+    type Kernel = Kernel;
+
+    /// On whichever side they are.
+    #[inline(always)]
+    fn range(&self, receiver: &Receiver, kernel: &Kernel) -> DepthRange {
+        let mut range: Option<DepthRange> = None;
+        for (side, pyramid) in self.pyramids.iter().enumerate() {
+            let Some(footprint) = kernel.footprint(receiver, side) else { continue };
+            let here = match (pyramid, footprint) {
+                (None, _) => DepthRange::NOTHING,
+                (Some(pyramid), kernel::Footprint::Whole) => pyramid.whole(),
+                (Some(pyramid), kernel::Footprint::Part(tangents)) => {
+                    pyramid.range(&self.cube.texels_between(tangents))
+                }
+            };
+            range = Some(range.map_or(here, |range| range.union(here)));
         }
+        range.unwrap_or(DepthRange::NOTHING)
     }
 
-    /// The same from the taps alone.
     #[inline(always)]
-    fn lit_part<S: Simd>(&self, simd: S, disc: &Disc, receiver: &Receiver, kernel: &Kernel) -> f32 {
-        let mut count = 0;
-        self.for_each_tap(
-            simd,
-            disc,
-            receiver,
-            kernel,
-            always(
-                #[inline(always)]
-                |blocked: mask32x8<S>, _| count += blocked.to_bitmask().count_ones(),
-            ),
-        );
-        (disc.count() - float(count)) / disc.count()
+    fn verdict(&self, receiver: &Receiver, kernel: &Kernel, range: DepthRange) -> Verdict {
+        kernel.verdict(receiver, &self.cube.lens, range)
     }
 
-    /// Soft shadow: as wide as the blockers above the receiver make it.
-    #[inline(always)]
-    fn soft<S: Simd>(
-        &self,
-        simd: S,
-        pyramids: &Pyramids,
-        search: &Disc,
-        filter: &Disc,
-        receiver: &Receiver,
-        size: &SoftKernel,
-    ) -> f32 {
-        // No caster is nearer than depth 1.
-        let mut nearest = receiver.scale * receiver.distance;
-        let mut kernel = size.search(receiver, nearest);
-        for _ in 0..NARROWINGS {
-            let range = self.range_under(pyramids, receiver, &kernel);
-            match kernel.verdict(receiver, &self.lens, range) {
-                Verdict::Lit => return 1.0,
-                // The filter would lie within the search.
-                Verdict::Dark if size.search.is_none() => return 0.0,
-                _ => {}
-            }
-            let ratio = range.greatest * (receiver.scale * (receiver.distance + kernel.reach()));
-            if size.search.is_some() || ratio >= nearest {
-                break;
-            }
-            nearest = ratio;
-            kernel = size.search(receiver, nearest);
-        }
-        let Some(mean) = self.mean_blocker(simd, search, receiver, &kernel) else { return 1.0 };
-        let ratio = if size.search.is_none() && mean > nearest { nearest } else { mean };
-        self.filtered(simd, pyramids, filter, receiver, &size.kernel(receiver, ratio))
-    }
-
-    /// Mean of the distance ratios of what the kernel's taps find before the receiver.
-    #[inline(always)]
-    fn mean_blocker<S: Simd>(
-        &self,
-        simd: S,
-        disc: &Disc,
-        receiver: &Receiver,
-        kernel: &Kernel,
-    ) -> Option<f32> {
-        let zero = f32x8::splat(simd, 0.0);
-        let (mut sum, mut count) = (zero, 0);
-        self.for_each_tap(
-            simd,
-            disc,
-            receiver,
-            kernel,
-            always(
-                #[inline(always)]
-                |blocked: mask32x8<S>, ratio: f32x8<S>| {
-                    sum += blocked.select(ratio, zero);
-                    count += blocked.to_bitmask().count_ones();
-                },
-            ),
-        );
-        (count > 0).then(|| sum_of_lanes(sum) / float(count))
-    }
-
-    /// Calls `f` with what blocks the light of eight taps, and their distance ratios.
-    ///
     /// A tap asks about the point of the receiver's plane in its direction; where that lies farther from
     /// the light than the tap, about the tap itself: what lies behind a point cannot shade it.
     #[inline(always)]
@@ -287,40 +241,48 @@ impl CubeMap {
                         z: centre.z + (points.x * a.z + points.y * b.z),
                     };
                     let slope = max(points.x * slope_a + points.y * slope_b, zero);
-                    let plane = (slope + self.lens.nearest_blocker()) + points.radius * kernel.rise;
-                    let ratio = self.ratio(simd, &Spot::of(simd, tap), scale);
+                    let plane = (slope + self.cube.lens.nearest_blocker()) + points.radius * kernel.rise;
+                    let ratio = self.cube.ratio(simd, &Spot::of(simd, tap), scale);
                     f(points.counts & ratio.simd_gt(plane), ratio);
                 },
             ),
         );
     }
+}
 
-    /// A range that holds every depth that taps of the kernel can meet, on whichever side.
+impl<'a> Light for Soft<'a> {
+    type Maps = Maps<'a>;
+
     #[inline(always)]
-    fn range_under(&self, pyramids: &Pyramids, receiver: &Receiver, kernel: &Kernel) -> DepthRange {
-        let mut range: Option<DepthRange> = None;
-        for (side, pyramid) in pyramids.iter().enumerate() {
-            let Some(footprint) = kernel.footprint(receiver, side) else { continue };
-            let here = match (pyramid, footprint) {
-                (None, _) => DepthRange::NOTHING,
-                (Some(pyramid), kernel::Footprint::Whole) => pyramid.whole(),
-                (Some(pyramid), kernel::Footprint::Part(tangents)) => {
-                    pyramid.range(&self.texels_between(tangents))
-                }
-            };
-            range = Some(range.map_or(here, |range| range.union(here)));
-        }
-        range.unwrap_or(DepthRange::NOTHING)
+    fn maps(&self) -> &Maps<'a> {
+        &self.maps
     }
 
-    /// The texels between tangents to the right and upwards, and a hair more than the rounding of a tap.
+    /// No caster is nearer than depth 1.
     #[inline(always)]
-    fn texels_between(&self, [right, up]: [[f32; 2]; 2]) -> TexelBox {
-        const HAIR: f32 = 1.0 / 64.0;
-        let (focal_length, corner) = (self.lens.focal_length, float(self.resolution) * 0.5);
-        let x = [right[0] * focal_length + corner - HAIR, right[1] * focal_length + corner + HAIR];
-        let y = [corner - up[1] * focal_length - HAIR, corner - up[0] * focal_length + HAIR];
-        TexelBox::between(x, y, self.resolution)
+    fn highest(&self, receiver: &Receiver) -> f32 {
+        receiver.scale * receiver.distance
+    }
+
+    #[inline(always)]
+    fn height_within(&self, receiver: &Receiver, kernel: &Kernel, range: DepthRange) -> f32 {
+        range.greatest * (receiver.scale * (receiver.distance + kernel.reach()))
+    }
+
+    /// Taps tell of ratios.
+    #[inline(always)]
+    fn height(&self, _: &Receiver, blocker: f32) -> f32 {
+        blocker
+    }
+
+    #[inline(always)]
+    fn kernel(&self, receiver: &Receiver, height: f32) -> Kernel {
+        self.size.kernel(receiver, height)
+    }
+
+    #[inline(always)]
+    fn fixed_search(&self, receiver: &Receiver) -> Option<Kernel> {
+        self.size.fixed_search(receiver)
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
+use super::penumbra::{Light, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
-use super::{DEPTH_TOLERANCE, PCF_TAPS, Verdict, WIDEST_CONE, bits, sum_of_lanes};
+use super::{DEPTH_TOLERANCE, PCF_TAPS, WIDEST_CONE};
 use crate::math::round_to_f32;
 use crate::math::simd::*;
 use crate::pipeline::shade::{BLOCK, varyings::Receivers};
@@ -61,8 +62,24 @@ struct Receiver {
 /// casters are wide.
 const WIDEST_TEXELS: f32 = 1024.0;
 
-/// How often the search for blockers is narrowed to what the nearest caster below it demands.
-const NARROWINGS: usize = 3;
+/// A map and its pyramid.
+struct Maps<'a> {
+    depth: &'a DepthMap,
+    pyramid: &'a Pyramid,
+}
+
+/// A kernel and the texels that its taps can meet.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    kernel: Kernel,
+    texels: TexelBox,
+}
+
+/// A light that is no point: heights are depths above the receiver's.
+struct Soft<'a> {
+    maps: Maps<'a>,
+    size: &'a SoftKernel,
+}
 
 impl DirectionalMap {
     /// Draws the one map of `pass`.
@@ -103,15 +120,16 @@ impl DirectionalMap {
                 }
             }
             MapFilter::Pcf { pyramid, disc, kernel } => {
-                for at in bits(asked) {
+                let maps = Maps { depth: &self.depth, pyramid };
+                for at in set_bits(asked) {
                     let receiver = self.receiver(receivers, at);
-                    out[at] = self.filtered(simd, pyramid, disc, &receiver, kernel);
+                    out[at] = filtered(simd, &maps, disc, &receiver, &maps.place(&receiver, *kernel));
                 }
             }
             MapFilter::Pcss { pyramid, search, filter, size } => {
-                for at in bits(asked) {
-                    let receiver = self.receiver(receivers, at);
-                    out[at] = self.soft(simd, pyramid, search, filter, &receiver, size);
+                let light = Soft { maps: Maps { depth: &self.depth, pyramid }, size };
+                for at in set_bits(asked) {
+                    out[at] = soft(simd, &light, search, filter, &self.receiver(receivers, at));
                 }
             }
         }
@@ -147,117 +165,33 @@ impl DirectionalMap {
             slope: [plane[0][at], plane[1][at]],
         }
     }
+}
 
-    /// The part of the kernel's taps that is lit: exactly 1 if all are, exactly 0 if none is.
+impl Maps<'_> {
     #[inline(always)]
-    fn filtered<S: Simd>(
-        &self,
-        simd: S,
-        pyramid: &Pyramid,
-        disc: &Disc,
-        receiver: &Receiver,
-        kernel: &Kernel,
-    ) -> f32 {
-        let texels = self.texels_under(receiver, kernel);
-        match kernel.verdict(receiver, pyramid.range(&texels)) {
-            Verdict::Lit => 1.0,
-            Verdict::Dark => 0.0,
-            Verdict::Mixed => self.lit_part(simd, disc, receiver, kernel, &texels),
-        }
+    fn place(&self, receiver: &Receiver, kernel: Kernel) -> Placed {
+        let [across, down] = kernel.radius;
+        let (x, y) = (receiver.x, receiver.y);
+        let resolution = self.depth.resolution();
+        let texels = TexelBox::between([x - across, x + across], [y - down, y + down], resolution);
+        Placed { kernel, texels }
+    }
+}
+
+impl Taps for Maps<'_> {
+    type Receiver = Receiver;
+    type Kernel = Placed;
+
+    #[inline(always)]
+    fn range(&self, _: &Receiver, placed: &Placed) -> DepthRange {
+        self.pyramid.range(&placed.texels)
     }
 
-    /// The same from the taps alone.
     #[inline(always)]
-    fn lit_part<S: Simd>(
-        &self,
-        simd: S,
-        disc: &Disc,
-        receiver: &Receiver,
-        kernel: &Kernel,
-        texels: &TexelBox,
-    ) -> f32 {
-        let mut blocked = 0;
-        self.for_each_tap(
-            simd,
-            disc,
-            receiver,
-            kernel,
-            texels,
-            always(
-                #[inline(always)]
-                |mask: mask32x8<S>, _| blocked += mask.to_bitmask().count_ones(),
-            ),
-        );
-        (disc.count() - float(blocked)) / disc.count()
+    fn verdict(&self, receiver: &Receiver, placed: &Placed, range: DepthRange) -> Verdict {
+        placed.kernel.verdict(receiver, range)
     }
 
-    /// Soft shadow: as wide as the blockers above the receiver make it.
-    #[inline(always)]
-    fn soft<S: Simd>(
-        &self,
-        simd: S,
-        pyramid: &Pyramid,
-        search: &Disc,
-        filter: &Disc,
-        receiver: &Receiver,
-        size: &SoftKernel,
-    ) -> f32 {
-        // No caster lies above depth 1.
-        let mut height = 1.0 - receiver.depth;
-        let mut kernel = size.search(height);
-        let mut texels = self.texels_under(receiver, &kernel);
-        for _ in 0..NARROWINGS {
-            let range = pyramid.range(&texels);
-            match kernel.verdict(receiver, range) {
-                Verdict::Lit => return 1.0,
-                // The filter would lie within the search.
-                Verdict::Dark if size.search_radius.is_none() => return 0.0,
-                _ => {}
-            }
-            if size.search_radius.is_some() || range.greatest - receiver.depth >= height {
-                break;
-            }
-            height = range.greatest - receiver.depth;
-            kernel = size.search(height);
-            texels = self.texels_under(receiver, &kernel);
-        }
-        let Some(mean) = self.mean_blocker(simd, search, receiver, &kernel, &texels) else { return 1.0 };
-        let mean = mean - receiver.depth;
-        let above = if size.search_radius.is_none() && mean > height { height } else { mean };
-        self.filtered(simd, pyramid, filter, receiver, &size.kernel(above))
-    }
-
-    /// Mean depth of what the kernel's taps find before the receiver.
-    #[inline(always)]
-    fn mean_blocker<S: Simd>(
-        &self,
-        simd: S,
-        disc: &Disc,
-        receiver: &Receiver,
-        kernel: &Kernel,
-        texels: &TexelBox,
-    ) -> Option<f32> {
-        let zero = f32x8::splat(simd, 0.0);
-        let (mut sum, mut count) = (zero, 0);
-        self.for_each_tap(
-            simd,
-            disc,
-            receiver,
-            kernel,
-            texels,
-            always(
-                #[inline(always)]
-                |blocked: mask32x8<S>, depth: f32x8<S>| {
-                    sum += blocked.select(depth, zero);
-                    count += blocked.to_bitmask().count_ones();
-                },
-            ),
-        );
-        (count > 0).then(|| sum_of_lanes(sum) / float(count))
-    }
-
-    /// Calls `f` with what blocks the light of eight taps, and their depths.
-    ///
     /// A tap asks about the point of the receiver's plane above or below it; where that lies deeper than
     /// the receiver, about the receiver's own depth: what lies deeper than a point cannot shade it.
     #[inline(always)]
@@ -266,8 +200,7 @@ impl DirectionalMap {
         simd: S,
         disc: &Disc,
         receiver: &Receiver,
-        kernel: &Kernel,
-        texels: &TexelBox,
+        Placed { kernel, texels }: &Placed,
         mut f: impl FnMut(mask32x8<S>, f32x8<S>),
     ) {
         let window = self.depth.window(texels);
@@ -288,13 +221,40 @@ impl DirectionalMap {
             ),
         );
     }
+}
+
+impl<'a> Light for Soft<'a> {
+    type Maps = Maps<'a>;
 
     #[inline(always)]
-    fn texels_under(&self, receiver: &Receiver, kernel: &Kernel) -> TexelBox {
-        let [across, down] = kernel.radius;
-        let (x, y) = (receiver.x, receiver.y);
-        let resolution = self.depth.resolution();
-        TexelBox::between([x - across, x + across], [y - down, y + down], resolution)
+    fn maps(&self) -> &Maps<'a> {
+        &self.maps
+    }
+
+    /// No caster lies above depth 1.
+    #[inline(always)]
+    fn highest(&self, receiver: &Receiver) -> f32 {
+        1.0 - receiver.depth
+    }
+
+    #[inline(always)]
+    fn height_within(&self, receiver: &Receiver, _: &Placed, range: DepthRange) -> f32 {
+        range.greatest - receiver.depth
+    }
+
+    #[inline(always)]
+    fn height(&self, receiver: &Receiver, blocker: f32) -> f32 {
+        blocker - receiver.depth
+    }
+
+    #[inline(always)]
+    fn kernel(&self, receiver: &Receiver, height: f32) -> Placed {
+        self.maps.place(receiver, self.size.kernel(height))
+    }
+
+    #[inline(always)]
+    fn fixed_search(&self, receiver: &Receiver) -> Option<Placed> {
+        Some(self.maps.place(receiver, self.size.fixed_search()?))
     }
 }
 
@@ -327,17 +287,12 @@ impl SoftKernel {
         Kernel { radius, rise: self.rise_per_depth * height }
     }
 
-    /// Where blockers up to `height` above a receiver are looked for.
+    /// Where blockers are looked for, if that does not follow from their height.
     #[inline(always)]
-    fn search(&self, height: f32) -> Kernel {
-        match self.search_radius {
-            None => self.kernel(height),
-            Some(radius) => {
-                let kernel = Kernel { radius: [radius; 2], rise: 0.0 };
-                let reach = radius / self.per_depth[0].max(self.per_depth[1]);
-                Kernel { rise: self.rise_per_depth * reach, ..kernel }
-            }
-        }
+    fn fixed_search(&self) -> Option<Kernel> {
+        let radius = self.search_radius?;
+        let reach = radius / self.per_depth[0].max(self.per_depth[1]);
+        Some(Kernel { radius: [radius; 2], rise: self.rise_per_depth * reach })
     }
 }
 

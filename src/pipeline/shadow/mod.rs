@@ -27,6 +27,7 @@ mod cube;
 mod depth_map;
 mod directional;
 mod disc;
+mod penumbra;
 mod pyramid;
 
 pub use cube::CubeMap;
@@ -62,16 +63,6 @@ const HALF_TEXEL: f64 = 0.5 + 1.0 / 128.0;
 /// the same surface. In the cone between a receiver and a large light, by less than this part of the
 /// cone's own height.
 const WIDEST_CONE: f64 = 0.25;
-
-/// What a pyramid says of a kernel.
-enum Verdict {
-    /// No tap is blocked.
-    Lit,
-    /// Every tap is.
-    Dark,
-    /// The taps must tell.
-    Mixed,
-}
 
 /// Draws the maps of each pass.
 ///
@@ -125,22 +116,6 @@ pub fn frame(pass: &ShadowPass) -> ShadowFrame {
             ShadowFrame { linear: DMat3::IDENTITY, origin: *position, rays: RayFrame::FromPoint }
         }
     }
-}
-
-/// The numbers of the bits that are set, the lowest first.
-#[inline(always)]
-fn bits(mut set: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lowest = set.trailing_zeros();
-        set &= set.wrapping_sub(1);
-        (lowest < u64::BITS).then_some(lowest as usize)
-    })
-}
-
-/// The sum of eight lanes, in a fixed order.
-#[inline(always)]
-fn sum_of_lanes<S: Simd>(v: f32x8<S>) -> f32 {
-    ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]))
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ pub struct Layer {
 impl Layer {
     /// Its seen samples in order, each with its depth.
     pub fn samples<'a>(&self, layers: &'a Layers) -> impl Iterator<Item = (usize, f32)> + use<'a> {
-        bits(self.seen).zip(layers.depths[self.first as usize..].iter().copied())
+        set_bits(u64::from(self.seen)).zip(layers.depths[self.first as usize..].iter().copied())
     }
 
     /// The depth of a seen sample.
@@ -47,15 +47,6 @@ impl Layer {
         let before = self.seen & ((1 << sample) - 1);
         layers.depths[self.first as usize + before.count_ones() as usize]
     }
-}
-
-/// Numbers of the bits that are set, ascending.
-fn bits(mut mask: u16) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lowest = (mask != 0).then(|| mask.trailing_zeros() as usize)?;
-        mask &= mask - 1;
-        Some(lowest)
-    })
 }
 
 /// Layers of a tile.

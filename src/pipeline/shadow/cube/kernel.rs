@@ -1,6 +1,7 @@
 //! Discs around receivers, as a cube sees them.
 
-use super::super::{Verdict, WIDEST_CONE};
+use super::super::WIDEST_CONE;
+use super::super::penumbra::Verdict;
 use super::receiver::{Receiver, dot};
 use super::{Lens, PcfKernel, SoftKernel};
 use crate::math::simd::*;
@@ -151,16 +152,11 @@ impl SoftKernel {
         self.sized(receiver, limited(light_radius * (ratio - 1.0), receiver), light_radius)
     }
 
-    /// Where blockers that are up to `ratio` times nearer are looked for.
+    /// Where blockers are looked for, if that does not follow from their distance.
     #[inline(always)]
-    pub(super) fn search(&self, receiver: &Receiver, ratio: f32) -> Kernel {
-        match self.search {
-            None => self.kernel(receiver, ratio),
-            Some(tangent) => {
-                let radius = limited(tangent * receiver.length, receiver);
-                self.sized(receiver, radius, self.light_radius / receiver.unit)
-            }
-        }
+    pub(super) fn fixed_search(&self, receiver: &Receiver) -> Option<Kernel> {
+        let radius = limited(self.search? * receiver.length, receiver);
+        Some(self.sized(receiver, radius, self.light_radius / receiver.unit))
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 use super::*;
 use crate::pipeline::shadow::depth_map::tests::map_of;
+use crate::pipeline::shadow::penumbra::lit_part;
 use crate::pipeline::shadow::tests::{Random, with_work};
 use glam::Vec3;
 
@@ -53,12 +54,13 @@ fn the_pyramids_answer_as_every_tap_would() {
     let (mut lit, mut dark, mut mixed) = (0, 0, 0);
     for resolution in [16, 64, 200, 333] {
         let (map, pyramids) = rugged(&mut rng, resolution);
+        let maps = Maps { cube: &map, pyramids: &pyramids };
         for _ in 0..4000 {
             let receiver = receiver(&mut rng, &map.lens);
             let largest = if rng.below(3) == 0 { 0.6 } else { 3.0 / map.lens.focal_length };
             let kernel = PcfKernel { tangent: rng.between(0.0, largest), bias: 1.0 }.around(&receiver);
-            let taps = dispatch!(Level::new(), simd => map.lit_part(simd, &disc, &receiver, &kernel));
-            match kernel.verdict(&receiver, &map.lens, map.range_under(&pyramids, &receiver, &kernel)) {
+            let taps = dispatch!(Level::new(), simd => lit_part(simd, &maps, &disc, &receiver, &kernel));
+            match maps.verdict(&receiver, &kernel, maps.range(&receiver, &kernel)) {
                 Verdict::Lit => {
                     lit += 1;
                     assert_eq!(taps, 1.0, "{receiver:?} {kernel:?}");
@@ -91,10 +93,10 @@ fn soft_shadows_are_finite_for_lights_and_searches_of_every_size() {
     for light_radius in [1e-30, 0.05, 1.0, 1e30] {
         for search_tangent in [None, Some(0.0), Some(0.1), Some(10.0)] {
             let size = SoftKernel { light_radius, search: search_tangent, bias: 1.0 };
+            let light = Soft { maps: Maps { cube: &map, pyramids: &pyramids }, size: &size };
             for receiver in &receivers {
-                let visibility = dispatch!(Level::new(), simd => {
-                    map.soft(simd, &pyramids, &search, &filter, receiver, &size)
-                });
+                let visibility =
+                    dispatch!(Level::new(), simd => soft(simd, &light, &search, &filter, receiver));
                 assert!((0.0..=1.0).contains(&visibility), "{receiver:?} {size:?}: {visibility}");
             }
         }

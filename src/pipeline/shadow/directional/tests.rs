@@ -1,5 +1,6 @@
 use super::*;
 use crate::pipeline::shadow::depth_map::tests::map_of;
+use crate::pipeline::shadow::penumbra::{lit_part, mean_blocker};
 use crate::pipeline::shadow::tests::{Random, with_work};
 
 /// A slope, a block above it, blank tiles, and noise.
@@ -37,15 +38,15 @@ fn the_pyramid_answers_as_every_tap_would() {
     for resolution in [1, 50, 64, 200, 333] {
         let map = rugged(&mut rng, resolution);
         let pyramid = with_work(|work| Pyramid::over(&map.depth, work).unwrap());
+        let maps = Maps { depth: &map.depth, pyramid: &pyramid };
         for _ in 0..4000 {
             let receiver = receiver(&mut rng, resolution);
             let largest = if rng.below(3) == 0 { 80.0 } else { 3.0 };
             let radius = [rng.between(0.0, largest), rng.between(0.0, largest)];
             let kernel = Kernel { radius, rise: rng.between(0.0, 0.01) };
-            let texels = map.texels_under(&receiver, &kernel);
-            let taps =
-                dispatch!(Level::new(), simd => map.lit_part(simd, &disc, &receiver, &kernel, &texels));
-            match kernel.verdict(&receiver, pyramid.range(&texels)) {
+            let placed = maps.place(&receiver, kernel);
+            let taps = dispatch!(Level::new(), simd => lit_part(simd, &maps, &disc, &receiver, &placed));
+            match kernel.verdict(&receiver, maps.range(&receiver, &placed)) {
                 Verdict::Lit => {
                     lit += 1;
                     assert_eq!(taps, 1.0, "{receiver:?} {kernel:?}");
@@ -70,16 +71,17 @@ fn a_search_that_the_pyramid_ends_would_have_ended_the_same() {
     for resolution in [64, 200, 333] {
         let map = rugged(&mut rng, resolution);
         let pyramid = with_work(|work| Pyramid::over(&map.depth, work).unwrap());
+        let maps = Maps { depth: &map.depth, pyramid: &pyramid };
         let per_depth = rng.between(5.0, 60.0);
         let size =
             SoftKernel { per_depth: [per_depth, per_depth * 0.7], rise_per_depth: 0.05, search_radius: None };
         for _ in 0..3000 {
             let receiver = receiver(&mut rng, resolution);
-            let kernel = size.search(rng.between(0.0, 1.0 - receiver.depth));
-            let texels = map.texels_under(&receiver, &kernel);
+            let kernel = size.kernel(rng.between(0.0, 1.0 - receiver.depth));
+            let placed = maps.place(&receiver, kernel);
             dispatch!(Level::new(), simd => {
-                let mean = map.mean_blocker(simd, &search, &receiver, &kernel, &texels);
-                match kernel.verdict(&receiver, pyramid.range(&texels)) {
+                let mean = mean_blocker(simd, &maps, &search, &receiver, &placed);
+                match kernel.verdict(&receiver, maps.range(&receiver, &placed)) {
                     Verdict::Lit => {
                         lit += 1;
                         assert_eq!(mean, None, "{receiver:?} {kernel:?}");
@@ -87,9 +89,9 @@ fn a_search_that_the_pyramid_ends_would_have_ended_the_same() {
                     Verdict::Dark => {
                         dark += 1;
                         let inner = Kernel { radius: kernel.radius.map(|r| r * 0.9), rise: kernel.rise * 0.9 };
-                        let texels = map.texels_under(&receiver, &inner);
+                        let inner = maps.place(&receiver, inner);
                         assert!(mean.is_some(), "{receiver:?} {kernel:?}");
-                        assert_eq!(map.lit_part(simd, &filter, &receiver, &inner, &texels), 0.0);
+                        assert_eq!(lit_part(simd, &maps, &filter, &receiver, &inner), 0.0);
                     }
                     Verdict::Mixed => {}
                 }
@@ -115,10 +117,10 @@ fn soft_shadows_are_finite_for_blockers_and_searches_of_every_size() {
     for per_depth in [0.0, 1e-30, 1.0, 1e6, 1e30] {
         for search_radius in [None, Some(0.0), Some(7.0), Some(1024.0)] {
             let size = SoftKernel { per_depth: [per_depth; 2], rise_per_depth: 0.25, search_radius };
+            let light = Soft { maps: Maps { depth: &map.depth, pyramid: &pyramid }, size: &size };
             for receiver in &receivers {
-                let visibility = dispatch!(Level::new(), simd => {
-                    map.soft(simd, &pyramid, &search, &filter, receiver, &size)
-                });
+                let visibility =
+                    dispatch!(Level::new(), simd => soft(simd, &light, &search, &filter, receiver));
                 assert!((0.0..=1.0).contains(&visibility), "{receiver:?} {size:?}: {visibility}");
             }
         }
