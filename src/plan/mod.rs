@@ -16,7 +16,7 @@ pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
 pub use opacity::{Alpha, AlphaTest, ItemTest, Opacity, Transparency};
 pub use post::{Curve, Gaussian, Kernel, KernelRow, Neighbourhood, Pointwise, PostChain, PostPass};
 pub use request::{FrameRequest, Output, QueryFault};
-pub use shadow::{CasterTest, Face, Filter, Maps, Pcss, ShadowPass, orthonormal_basis};
+pub use shadow::{CasterTest, Face, Filter, Maps, Pcss, ShadowPass, WIDEST_TANGENT, orthonormal_basis};
 
 use crate::limits::Limits;
 use crate::math::View;

@@ -23,7 +23,7 @@ use receiver::{Lifted, Receiver};
 /// The maps around a point light. Sides: +x, −x, +y, −y, +z, −z.
 #[derive(Debug, PartialEq)]
 pub struct CubeMap {
-    /// `None` where no caster is or no receiver can be.
+    /// `None` where no caster is, or no receiver whose kernel reaches it.
     sides: [Option<DepthMap>; 6],
     resolution: u32,
     lens: Lens,

@@ -4,6 +4,8 @@ mod casters;
 mod cube;
 mod directional;
 
+pub use cube::WIDEST_TANGENT;
+
 use super::{AlphaTest, Item, ItemTest, number};
 use crate::math::View;
 use crate::scene::{Scene, Shadow, ShadowFilter};
@@ -186,7 +188,7 @@ pub fn plan(scene: &Scene, t: f64, rays: Rays, shadow: &Shadow) -> Option<Shadow
             Maps::Directional(Face::new(0, view, casters.into_iter()))
         }
         Rays::FromPoint(position) => {
-            let faces = cube::faces(position, &casters, &receivers, shadow.resolution);
+            let faces = cube::faces(position, &casters, &receivers, shadow.resolution, &filter);
             (!faces.is_empty()).then_some(Maps::Cube { position, faces })?
         }
     };

@@ -1,6 +1,7 @@
 //! Pictures against closed forms in f64, and a small set of golden pictures.
 
 mod coverage;
+mod cube_sides;
 mod examples;
 mod faces;
 mod golden;

@@ -6,6 +6,7 @@ use super::receiver::{Receiver, dot};
 use super::{Lens, PcfKernel, SoftKernel};
 use crate::math::simd::*;
 use crate::pipeline::shadow::pyramid::DepthRange;
+use crate::plan::WIDEST_TANGENT;
 use glam::Vec3;
 
 /// A disc across the light's ray through a receiver.
@@ -37,9 +38,6 @@ pub(super) struct Spot<S: Simd> {
     /// Length along the side's axis.
     pub(super) distance: f32x8<S>,
 }
-
-/// The widest kernel: 27° to each side. A light that is seen larger is beyond what one map can tell.
-const WIDEST_TANGENT: f32 = 0.5;
 
 /// Covers what rounding adds to the bounds of a kernel's taps: a few units in the last place.
 const SLACK: f32 = 1.0 + 1e-5;
