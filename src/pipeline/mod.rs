@@ -34,7 +34,7 @@ pub use work::{Cancelled, Work};
 use crate::plan::{Output, Plan};
 use geometry::Bins;
 use geometry::bin::TileGrid;
-use post::LinearFrame;
+use post::{Effect, LinearFrame};
 use shade::Lighting;
 use shade::light::LightSource;
 use std::time::Instant;
@@ -45,16 +45,32 @@ use tiles::{Resolved, Shared, Tile};
 /// # Errors
 /// [`Cancelled`].
 pub fn render(plan: &Plan, work: &Work) -> Result<Frame, Cancelled> {
-    let frames = render_each(std::slice::from_ref(plan), work)?;
+    render_with(plan, &[], work)
+}
+
+/// Draws one frame, with `effects` in their order after those of the plan.
+///
+/// They change [`Output::Color`] alone: data outputs and radiance know no post effects. The planes they
+/// work in are not in the plan's estimate of memory.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn render_with(plan: &Plan, effects: &[&dyn Effect], work: &Work) -> Result<Frame, Cancelled> {
+    let frames = draw_each(std::slice::from_ref(plan), effects, work)?;
     Ok(frames.into_iter().next().expect("a frame for each plan"))
 }
 
 /// Draws a frame for each plan. Plans that show the same triangles, as the outputs of one request do,
-/// are drawn from one pass over them. The order of the lines is the order of the passes.
+/// are drawn from one pass over them.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn render_each(plans: &[Plan], work: &Work) -> Result<Vec<Frame>, Cancelled> {
+    draw_each(plans, &[], work)
+}
+
+/// Draws a frame for each plan. The order of the lines is the order of the passes.
+fn draw_each(plans: &[Plan], effects: &[&dyn Effect], work: &Work) -> Result<Vec<Frame>, Cancelled> {
     let mut frames = Vec::with_capacity(plans.len());
     let mut passes: Vec<(&Plan, Bins)> = Vec::new();
     for plan in plans {
@@ -70,7 +86,7 @@ pub fn render_each(plans: &[Plan], work: &Work) -> Result<Vec<Frame>, Cancelled>
                 passes.len() - 1
             }),
         })?;
-        frames.push(draw_output(plan, &passes[pass].1, &shadow_maps, timings, work)?);
+        frames.push(draw_output(plan, &passes[pass].1, &shadow_maps, effects, timings, work)?);
     }
     Ok(frames)
 }
@@ -90,12 +106,14 @@ fn draw_output(
     plan: &Plan,
     bins: &Bins,
     maps: &[shadow::ShadowMap],
+    effects: &[&dyn Effect],
     timings: Timings,
     work: &Work,
 ) -> Result<Frame, Cancelled> {
     match plan.output {
-        Output::Color | Output::Normal | Output::Albedo | Output::Radiance => {
-            draw_colors(plan, bins, maps, timings, work)
+        Output::Color => draw_colors(plan, bins, maps, effects, timings, work),
+        Output::Normal | Output::Albedo | Output::Radiance => {
+            draw_colors(plan, bins, maps, &[], timings, work)
         }
         Output::Depth | Output::Instance => draw_values(plan, bins, timings, work),
         Output::Wireframe => draw_wireframe(plan, bins, timings, work),
@@ -107,6 +125,7 @@ fn draw_colors(
     plan: &Plan,
     bins: &Bins,
     maps: &[shadow::ShadowMap],
+    effects: &[&dyn Effect],
     mut timings: Timings,
     work: &Work,
 ) -> Result<Frame, Cancelled> {
@@ -126,10 +145,11 @@ fn draw_colors(
         background: sky::Background::new(&plan.background, &plan.view),
         samples: plan.samples,
     };
+    let chain = post::Chain::new(&plan.post, effects);
     let (pixels, shaded) = match plan.output {
         Output::Radiance => draw_radiance(plan, &shared, &mut timings, work)?,
-        _ if plan.post.passes.is_empty() => draw_bytes(plan, &shared, &mut timings, work)?,
-        _ => draw_and_post(plan, &shared, &mut timings, work)?,
+        _ if chain.is_empty() => draw_bytes(plan, &shared, &mut timings, work)?,
+        _ => draw_and_post(plan, &shared, &chain, &mut timings, work)?,
     };
     let maps = plan.shadows.iter().map(|pass| pass.faces().len()).sum();
     Ok(Frame::new(plan, pixels, Stats::new(bins, shaded, maps), timings))
@@ -166,24 +186,25 @@ fn draw_radiance(
     Ok((Pixels::Rgba32F { pixels, opaque: !shared.background.is_transparent() }, shaded))
 }
 
-/// Tiles that end in linear colour for the passes of `post`, then those, then bytes.
+/// Tiles that end in linear colour for the effects of `chain`, then those, then bytes.
 fn draw_and_post(
     plan: &Plan,
     shared: &Shared,
+    chain: &post::Chain,
     timings: &mut Timings,
     work: &Work,
 ) -> Result<(Pixels, u64), Cancelled> {
     let transparent = shared.background.is_transparent();
-    let mut linear = LinearFrame::new([plan.view.width, plan.view.height], &plan.post, transparent);
+    let mut linear = LinearFrame::new([plan.view.width, plan.view.height], transparent, chain.spare_planes());
     let tiles = linear.tiles(&shared.bins.grid);
     let write = |resolved: &Resolved, tile: Tile<f32>| {
         post::write_tile(work.level, resolved, &plan.post.in_tiles, tile);
     };
     let shaded = draw_tiles(shared, tiles, write, timings, work)?;
     let began = Instant::now();
-    post::run_passes(&mut linear, &plan.post, work)?;
+    chain.run(&mut linear, work)?;
     let mut pixels = vec![[0; 4]; plan.view.pixels()];
-    output::encode_frame(&linear, plan.post.last_steps(), &mut pixels, work)?;
+    output::encode_frame(&linear, chain.last_steps(), &mut pixels, work)?;
     timings.push("post", milliseconds(began));
     Ok((Pixels::Rgba8 { pixels, opaque: !transparent }, shaded))
 }

@@ -14,7 +14,9 @@ mod view;
 
 pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
 pub use opacity::{Alpha, AlphaTest, ItemTest, Opacity, Transparency};
-pub use post::{Curve, Gaussian, Kernel, KernelRow, Neighbourhood, Pointwise, PostChain, PostPass};
+pub use post::{
+    Bloom, Curve, Fxaa, Gaussian, Kernel, KernelRow, Neighbourhood, Pointwise, PostChain, PostPass, Sharpen,
+};
 pub use request::{FrameRequest, Output, QueryFault};
 pub use shadow::{CasterTest, Face, Filter, Maps, Pcss, ShadowPass, WIDEST_TANGENT, orthonormal_basis};
 

@@ -4,8 +4,10 @@
 //! those before the first effect that looks at its neighbours run in the tiles, so that a chain without
 //! any such effect needs no picture in linear light at all.
 
+mod neighbourhood;
 mod weights;
 
+pub use neighbourhood::{Bloom, Fxaa, Neighbourhood, Sharpen};
 pub use weights::{Gaussian, Kernel, KernelRow};
 
 use crate::math::round_to_f32;
@@ -63,28 +65,6 @@ pub enum Curve {
     Reinhard,
 }
 
-/// An effect that looks at the pixels around.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Neighbourhood {
-    /// A Gaussian.
-    Blur(Gaussian),
-    /// The blurred light of what is brighter than a threshold, added.
-    Bloom {
-        /// Luminance from which it glows.
-        threshold: f32,
-        /// How much of the glow is added.
-        intensity: f32,
-        /// How far it reaches; `None`: no farther than the pixel itself.
-        gaussian: Option<Gaussian>,
-    },
-    /// Unsharp mask: how much of the difference to the blurred picture is added.
-    Sharpen(f32),
-    /// Fast approximate anti-aliasing.
-    Fxaa,
-    /// A correlation.
-    Kernel(Kernel),
-}
-
 /// An effect, settled.
 enum Step {
     Pointwise(Pointwise),
@@ -109,10 +89,10 @@ impl PostChain {
         chain
     }
 
-    /// What is left to do after the last pass.
+    /// What is left to do after the last pass; nothing if there is none.
     #[must_use]
     pub fn last_steps(&self) -> &[Pointwise] {
-        self.passes.last().map_or(&self.in_tiles, |pass| &pass.then)
+        self.passes.last().map_or(&[], |pass| &pass.then)
     }
 
     /// Samples from one row of a plane to the next: whole strips, and never so many that one column's
@@ -141,15 +121,6 @@ impl PostChain {
     }
 }
 
-impl Neighbourhood {
-    fn spare_planes(&self) -> usize {
-        match self {
-            Self::Blur(_) | Self::Sharpen(_) | Self::Kernel(_) | Self::Bloom { gaussian: None, .. } => 1,
-            Self::Bloom { .. } | Self::Fxaa => 2,
-        }
-    }
-}
-
 /// An effect as a step; `None` if it would change nothing.
 fn settle(effect: &PostEffect, size: [u32; 2]) -> Option<Step> {
     let pointwise = |step| Some(Step::Pointwise(step));
@@ -168,13 +139,15 @@ fn settle(effect: &PostEffect, size: [u32; 2]) -> Option<Step> {
             Gaussian::new(*radius).map(Neighbourhood::Blur).and_then(neighbourhood)
         }
         PostEffect::Bloom { intensity: 0.0, .. } | PostEffect::Sharpen { amount: 0.0 } => None,
-        PostEffect::Bloom { threshold, intensity, radius } => neighbourhood(Neighbourhood::Bloom {
+        PostEffect::Bloom { threshold, intensity, radius } => neighbourhood(Neighbourhood::Bloom(Bloom {
             threshold: factor(*threshold),
             intensity: factor(*intensity),
             gaussian: Gaussian::new(*radius),
-        }),
-        PostEffect::Sharpen { amount } => neighbourhood(Neighbourhood::Sharpen(factor(*amount))),
-        PostEffect::Fxaa => neighbourhood(Neighbourhood::Fxaa),
+        })),
+        PostEffect::Sharpen { amount } => {
+            neighbourhood(Neighbourhood::Sharpen(Sharpen { amount: factor(*amount) }))
+        }
+        PostEffect::Fxaa => neighbourhood(Neighbourhood::Fxaa(Fxaa)),
         PostEffect::Kernel { kernel } => {
             Kernel::new(kernel).map(Neighbourhood::Kernel).and_then(neighbourhood)
         }

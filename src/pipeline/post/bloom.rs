@@ -6,43 +6,33 @@
 use super::frame::{LinearFrame, Plane};
 use super::gaussian::{blur_down, blur_row};
 use super::passes::{RowPass, STRIP, Scratch, load, over_rows};
-use super::{finite, luminance};
+use super::{Effect, finite, luminance};
 use crate::math::simd::*;
 use crate::pipeline::work::{Cancelled, Work};
-use crate::plan::Gaussian;
+use crate::plan::{Bloom, Gaussian};
 
 /// Adds the glow.
-pub fn bloom(
-    frame: &mut LinearFrame,
-    threshold: f32,
-    intensity: f32,
-    gaussian: &Gaussian,
-    work: &Work,
-) -> Result<(), Cancelled> {
-    let (width, height) = (frame.width, frame.height);
-    let LinearFrame { planes, spare, .. } = frame;
-    let [share, across] = spare.get_disjoint_mut([0, 1]).expect("invariant: bloom has two spare planes");
-    over_rows(&Share { planes, threshold }, share, work)?;
-    for plane in planes.iter_mut().take(3) {
-        over_rows(&Across { from: plane, share, width, gaussian }, across, work)?;
-        over_rows(&AddDown { from: across, height, gaussian, intensity }, plane, work)?;
+impl Effect for Bloom {
+    fn spare_planes(&self) -> usize {
+        Self::SPARE_PLANES
     }
-    Ok(())
-}
 
-/// Adds a glow that reaches no farther than its own pixel.
-pub fn brighten(
-    frame: &mut LinearFrame,
-    threshold: f32,
-    intensity: f32,
-    work: &Work,
-) -> Result<(), Cancelled> {
-    let LinearFrame { planes, spare, .. } = frame;
-    over_rows(&Share { planes, threshold }, &mut spare[0], work)?;
-    for plane in planes.iter_mut().take(3) {
-        over_rows(&Brighten { share: &spare[0], intensity }, plane, work)?;
+    fn apply(&self, frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
+        let (width, height) = (frame.width, frame.height);
+        let Self { threshold, intensity, ref gaussian } = *self;
+        let LinearFrame { planes, spare, .. } = frame;
+        let [share, across] = spare.get_disjoint_mut([0, 1]).expect("invariant: bloom has two spare planes");
+        over_rows(&Share { planes, threshold }, share, work)?;
+        for plane in planes.iter_mut().take(3) {
+            let Some(gaussian) = gaussian else {
+                over_rows(&Brighten { share, intensity }, plane, work)?;
+                continue;
+            };
+            over_rows(&Across { from: plane, share, width, gaussian }, across, work)?;
+            over_rows(&AddDown { from: across, height, gaussian, intensity }, plane, work)?;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Which share of its colour a pixel glows with.

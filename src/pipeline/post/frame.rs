@@ -6,6 +6,7 @@ use crate::math::simd::*;
 use crate::pipeline::geometry::bin::TileGrid;
 use crate::pipeline::output::Row;
 use crate::pipeline::tiles::{Resolved, Tile};
+use crate::pipeline::work::{Cancelled, Work};
 use crate::plan::{Pointwise, PostChain};
 
 /// One channel of a picture, `stride × height` samples: pixels of a row, then padding of any finite
@@ -34,14 +35,15 @@ impl Plane {
         &self.samples[y * self.stride..][..self.stride]
     }
 
-    /// Every row.
-    pub fn samples_mut(&mut self) -> &mut [f32] {
-        &mut self.samples
+    /// The row `y` with its padding, to be written.
+    #[inline(always)]
+    pub fn row_mut(&mut self, y: usize) -> &mut [f32] {
+        &mut self.samples[y * self.stride..][..self.stride]
     }
 
-    /// Every row, in bands.
-    fn bands_mut(&mut self) -> impl Iterator<Item = &mut [f32]> {
-        self.samples.chunks_mut(self.stride * BAND)
+    /// Every row, in bands of [`BAND`]: each with the number of its first row.
+    pub(super) fn bands(&mut self) -> impl Iterator<Item = (usize, &mut [f32])> {
+        (0..).step_by(BAND).zip(self.samples.chunks_mut(self.stride * BAND))
     }
 }
 
@@ -54,20 +56,20 @@ pub struct LinearFrame {
     pub height: usize,
     /// Red, green, blue, and alpha if the background is transparent.
     pub planes: Vec<Plane>,
-    /// What the passes work in; of any content between them.
+    /// What effects work in, of the same size; of any finite content between them.
     pub spare: Vec<Plane>,
 }
 
 impl LinearFrame {
-    /// Room for a black picture of `width × height` pixels, and for the passes of `chain`.
+    /// Room for a black picture of `width × height` pixels, and for `spare` planes to work in.
     #[must_use]
-    pub fn new([width, height]: [u32; 2], chain: &PostChain, transparent: bool) -> Self {
+    pub fn new([width, height]: [u32; 2], transparent: bool, spare: usize) -> Self {
         let plane = |_| Plane::new(PostChain::stride(width), height as usize);
         Self {
             width: width as usize,
             height: height as usize,
             planes: (0..3 + usize::from(transparent)).map(plane).collect(),
-            spare: (0..chain.spare_planes()).map(plane).collect(),
+            spare: (0..spare).map(plane).collect(),
         }
     }
 
@@ -100,19 +102,52 @@ impl LinearFrame {
         }
         tiles
     }
+}
 
-    /// Splits the planes into bands of [`BAND`] rows: each with the number of its first row, and its
-    /// part of every plane.
-    pub fn bands(&mut self) -> Vec<(usize, Vec<&mut [f32]>)> {
-        let count = self.height.div_ceil(BAND);
-        let mut bands: Vec<_> = (0..count).map(|band| (band * BAND, Vec::with_capacity(4))).collect();
-        for plane in &mut self.planes {
-            for (band, rows) in bands.iter_mut().zip(plane.bands_mut()) {
-                band.1.push(rows);
+/// Calls `write(y, rows)` for every row on all threads: `rows` holds row `y` of each of `planes`, which
+/// are of one size. Pixels are followed by padding, which may be left as it is.
+///
+/// The planes of a picture may be written while its spare ones are read, and the other way round: they
+/// are fields of their own.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn write_rows(
+    planes: &mut [Plane],
+    work: &Work,
+    write: impl Fn(usize, &mut [&mut [f32]]) + Sync,
+) -> Result<(), Cancelled> {
+    let Some(stride) = planes.first().map(Plane::stride) else { return Ok(()) };
+    work.map(
+        bands(planes),
+        || (),
+        |(), (top, planes)| {
+            let mut planes: Vec<_> = planes.into_iter().map(|band| band.chunks_exact_mut(stride)).collect();
+            for y in top.. {
+                let mut rows: Vec<&mut [f32]> = planes.iter_mut().filter_map(Iterator::next).collect();
+                if rows.is_empty() {
+                    return;
+                }
+                write(y, &mut rows);
+            }
+        },
+    )?;
+    Ok(())
+}
+
+/// Splits planes of one size into bands of [`BAND`] rows: each with the number of its first row, and
+/// its part of every plane.
+pub(super) fn bands(planes: &mut [Plane]) -> Vec<(usize, Vec<&mut [f32]>)> {
+    let mut bands: Vec<(usize, Vec<&mut [f32]>)> = Vec::new();
+    for plane in planes {
+        for (band, (top, rows)) in plane.bands().enumerate() {
+            match bands.get_mut(band) {
+                Some((_, parts)) => parts.push(rows),
+                None => bands.push((top, vec![rows])),
             }
         }
-        bands
     }
+    bands
 }
 
 /// Writes a tile's colours, after `steps`, to the rows that [`LinearFrame::tiles`] gave it.

@@ -12,26 +12,33 @@
 mod edge;
 
 use super::frame::{LinearFrame, Plane};
-use super::luminance;
 use super::passes::{RowPass, STRIP, Scratch, Strip, load, over_rows, window};
+use super::{Effect, luminance};
 use crate::math::simd::*;
 use crate::pipeline::work::{Cancelled, Work};
+use crate::plan::Fxaa;
 use edge::{EDGE_MIN, EDGE_SHARE, Luma, Mix};
 
 /// Smooths the edges of a picture.
-pub fn fxaa(frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
-    let (width, height) = (frame.width, frame.height);
-    let LinearFrame { planes, spare, .. } = frame;
-    let [luma, mixes] = spare.get_disjoint_mut([0, 1]).expect("invariant: FXAA has two spare planes");
-    over_rows(&Brightness { planes }, luma, work)?;
-    over_rows(&FindEdges { luma, width, height }, mixes, work)?;
-    // From here on `luma` takes the channels' results, one after the other.
-    let (colors, alpha) = planes.split_at_mut(3);
-    for plane in colors {
-        over_rows(&Blend { from: plane, alpha: alpha.first(), mixes, width, height }, luma, work)?;
-        std::mem::swap(plane, luma);
+impl Effect for Fxaa {
+    fn spare_planes(&self) -> usize {
+        Self::SPARE_PLANES
     }
-    Ok(())
+
+    fn apply(&self, frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
+        let (width, height) = (frame.width, frame.height);
+        let LinearFrame { planes, spare, .. } = frame;
+        let [luma, mixes] = spare.get_disjoint_mut([0, 1]).expect("invariant: FXAA has two spare planes");
+        over_rows(&Brightness { planes }, luma, work)?;
+        over_rows(&FindEdges { luma, width, height }, mixes, work)?;
+        // From here on `luma` takes the channels' results, one after the other.
+        let (colors, alpha) = planes.split_at_mut(3);
+        for plane in colors {
+            over_rows(&Blend { from: plane, alpha: alpha.first(), mixes, width, height }, luma, work)?;
+            std::mem::swap(plane, luma);
+        }
+        Ok(())
+    }
 }
 
 /// √Y of the colours clamped to 0–1.

@@ -1,5 +1,6 @@
 //! Gaussian blur: across the rows into a spare plane, then down its columns.
 
+use super::Effect;
 use super::frame::{LinearFrame, Plane};
 use super::passes::{RowPass, STRIP, Scratch, Strip, load, over_rows, store, window};
 use crate::math::simd::*;
@@ -7,14 +8,20 @@ use crate::pipeline::work::{Cancelled, Work};
 use crate::plan::Gaussian;
 
 /// Blurs every plane, alpha too.
-pub fn blur(frame: &mut LinearFrame, gaussian: &Gaussian, work: &Work) -> Result<(), Cancelled> {
-    let (width, height) = (frame.width, frame.height);
-    let spare = &mut frame.spare[0];
-    for plane in &mut frame.planes {
-        over_rows(&Across { from: plane, width, gaussian }, spare, work)?;
-        over_rows(&Down { from: spare, height, gaussian }, plane, work)?;
+impl Effect for Gaussian {
+    fn spare_planes(&self) -> usize {
+        Self::SPARE_PLANES
     }
-    Ok(())
+
+    fn apply(&self, frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
+        let (width, height) = (frame.width, frame.height);
+        let spare = &mut frame.spare[0];
+        for plane in &mut frame.planes {
+            over_rows(&Across { from: plane, width, gaussian: self }, spare, work)?;
+            over_rows(&Down { from: spare, height, gaussian: self }, plane, work)?;
+        }
+        Ok(())
+    }
 }
 
 struct Across<'a> {

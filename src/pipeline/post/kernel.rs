@@ -1,21 +1,27 @@
 //! A free kernel: the correlation with a square of weights.
 
-use super::finite;
 use super::frame::{LinearFrame, Plane};
 use super::passes::{RowPass, STRIP, Scratch, Strip, add_scaled, load, over_rows, window};
+use super::{Effect, finite};
 use crate::math::simd::*;
 use crate::pipeline::work::{Cancelled, Work};
 use crate::plan::Kernel;
 
 /// Replaces every colour by the weighted sum of those around it.
-pub fn correlate(frame: &mut LinearFrame, kernel: &Kernel, work: &Work) -> Result<(), Cancelled> {
-    let (width, height) = (frame.width, frame.height);
-    let spare = &mut frame.spare[0];
-    for plane in frame.planes.iter_mut().take(3) {
-        over_rows(&Correlate { from: plane, width, height, kernel }, spare, work)?;
-        std::mem::swap(plane, spare);
+impl Effect for Kernel {
+    fn spare_planes(&self) -> usize {
+        Self::SPARE_PLANES
     }
-    Ok(())
+
+    fn apply(&self, frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
+        let (width, height) = (frame.width, frame.height);
+        let spare = &mut frame.spare[0];
+        for plane in frame.planes.iter_mut().take(3) {
+            over_rows(&Correlate { from: plane, width, height, kernel: self }, spare, work)?;
+            std::mem::swap(plane, spare);
+        }
+        Ok(())
+    }
 }
 
 struct Correlate<'a> {

@@ -32,8 +32,7 @@ pub trait RowPass: Sync {
 /// Runs a pass over every row of `out`.
 pub fn over_rows<P: RowPass>(pass: &P, out: &mut Plane, work: &Work) -> Result<(), Cancelled> {
     let stride = out.stride();
-    let bands = (0..).step_by(BAND).zip(out.samples_mut().chunks_mut(stride * BAND)).collect();
-    work.map(bands, Scratch::default, |scratch, (top, rows): (usize, &mut [f32])| {
+    work.map(out.bands().collect(), Scratch::default, |scratch, (top, rows): (usize, &mut [f32])| {
         dispatch!(work.level, simd => {
             for (y, row) in (top..).zip(rows.chunks_exact_mut(stride)) {
                 pass.row(simd, y, row, scratch);

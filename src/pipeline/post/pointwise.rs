@@ -1,7 +1,7 @@
 //! Effects that need one pixel's colour alone.
 
-use super::frame::LinearFrame;
-use super::{finite, luminance};
+use super::frame::{LinearFrame, bands};
+use super::{Effect, finite, luminance};
 use crate::math::simd::*;
 use crate::pipeline::output::Row;
 use crate::pipeline::shade::BRIGHTEST;
@@ -102,14 +102,26 @@ pub fn eight<S: Simd>(simd: S, from: &Row, x: usize, steps: &[Pointwise], place:
     from.premultiplied(simd, x, color)
 }
 
+/// Steps, taken one after the other by every pixel of a picture.
+impl Effect for Vec<Pointwise> {
+    fn apply(&self, frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
+        // Without steps, straight colours would still be rounded where alpha is not 1.
+        if self.is_empty() { Ok(()) } else { run(frame, self, work) }
+    }
+}
+
+/// A single step.
+impl Effect for Pointwise {
+    fn apply(&self, frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
+        run(frame, std::slice::from_ref(self), work)
+    }
+}
+
 /// Applies `steps` to a whole picture.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn run(frame: &mut LinearFrame, steps: &[Pointwise], work: &Work) -> Result<(), Cancelled> {
+fn run(frame: &mut LinearFrame, steps: &[Pointwise], work: &Work) -> Result<(), Cancelled> {
     let stride = frame.planes[0].stride();
     work.map(
-        frame.bands(),
+        bands(&mut frame.planes),
         || (),
         |(), (top, mut planes)| {
             dispatch!(work.level, simd => band(simd, &mut planes, stride, steps, top));

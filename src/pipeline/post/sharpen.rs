@@ -1,33 +1,40 @@
 //! Sharpening by an unsharp mask.
 
-use super::finite;
 use super::frame::{LinearFrame, Plane};
 use super::passes::{RowPass, STRIP, Scratch, Strip, load, over_rows, window};
+use super::{Effect, finite};
 use crate::math::simd::*;
 use crate::pipeline::work::{Cancelled, Work};
+use crate::plan::Sharpen;
 
 /// Weights of the blurred picture in each direction, in quarters.
 const MASK: [f32; 3] = [1.0, 2.0, 1.0];
 
 /// Adds `amount` times the difference to the picture blurred by 3 × 3 binomial weights.
-pub fn sharpen(frame: &mut LinearFrame, amount: f32, work: &Work) -> Result<(), Cancelled> {
-    let (width, height) = (frame.width, frame.height);
-    let spare = &mut frame.spare[0];
-    for plane in frame.planes.iter_mut().take(3) {
-        over_rows(&Sharpen { from: plane, width, height, amount }, spare, work)?;
-        std::mem::swap(plane, spare);
+impl Effect for Sharpen {
+    fn spare_planes(&self) -> usize {
+        Self::SPARE_PLANES
     }
-    Ok(())
+
+    fn apply(&self, frame: &mut LinearFrame, work: &Work) -> Result<(), Cancelled> {
+        let (width, height) = (frame.width, frame.height);
+        let spare = &mut frame.spare[0];
+        for plane in frame.planes.iter_mut().take(3) {
+            over_rows(&AddDetail { from: plane, width, height, amount: self.amount }, spare, work)?;
+            std::mem::swap(plane, spare);
+        }
+        Ok(())
+    }
 }
 
-struct Sharpen<'a> {
+struct AddDetail<'a> {
     from: &'a Plane,
     width: usize,
     height: usize,
     amount: f32,
 }
 
-impl RowPass for Sharpen<'_> {
+impl RowPass for AddDetail<'_> {
     #[inline(always)]
     fn row<S: Simd>(&self, simd: S, y: usize, out: &mut [f32], scratch: &mut Scratch) {
         let rows = [y.saturating_sub(1), y, (y + 1).min(self.height - 1)].map(|y| self.from.row(y));

@@ -2,6 +2,7 @@
 
 mod coverage;
 mod cube_sides;
+mod effects;
 mod examples;
 mod faces;
 mod golden;

@@ -10,7 +10,7 @@ use crate::numerics::determinism::levels;
 use crate::random::Random;
 use glam::Vec3;
 use rasterd::pipeline::Work;
-use rasterd::pipeline::post::{self, LinearFrame, Plane, run_passes};
+use rasterd::pipeline::post::{Chain, Effect, LinearFrame, Plane};
 use rasterd::plan::PostChain;
 use rasterd::scene::document::{PostEffect, TonemapOperator};
 
@@ -30,22 +30,17 @@ fn noise(random: &mut Random, channels: usize, most: f64) -> Planes {
 /// Runs effects on premultiplied planes.
 fn run(effects: &[PostEffect], planes: &Planes, work: &Work) -> Vec<Vec<f32>> {
     let chain = PostChain::new(effects, SIZE[0], SIZE[1]);
-    let mut frame = LinearFrame::new(SIZE, &chain, planes.len() > 3);
+    let mut frame = LinearFrame::new(SIZE, planes.len() > 3, chain.spare_planes());
     for (plane, from) in frame.planes.iter_mut().zip(planes) {
-        let stride = plane.stride();
-        for (row, from) in plane.samples_mut().chunks_mut(stride).zip(from.chunks(WIDTH)) {
-            for (to, value) in row.iter_mut().zip(from) {
+        for (y, from) in from.chunks(WIDTH).enumerate() {
+            for (to, value) in plane.row_mut(y).iter_mut().zip(from) {
                 *to = *value as f32;
             }
         }
     }
-    if !chain.in_tiles.is_empty() {
-        post::pointwise::run(&mut frame, &chain.in_tiles, work).expect("nobody cancels");
-    }
-    run_passes(&mut frame, &chain, work).expect("nobody cancels");
-    if !chain.passes.is_empty() && !chain.last_steps().is_empty() {
-        post::pointwise::run(&mut frame, chain.last_steps(), work).expect("nobody cancels");
-    }
+    chain.in_tiles.apply(&mut frame, work).expect("nobody cancels");
+    Chain::new(&chain, &[]).run(&mut frame, work).expect("nobody cancels");
+    chain.last_steps().to_vec().apply(&mut frame, work).expect("nobody cancels");
     let rows = |plane: &Plane| (0..HEIGHT).flat_map(|y| plane.row(y)[..WIDTH].to_vec()).collect();
     frame.planes.iter().map(rows).collect()
 }
