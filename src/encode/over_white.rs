@@ -1,23 +1,14 @@
 //! Transparent pixels over white, for formats without alpha.
 
 use crate::math::approx::srgb_from_linear;
-use crate::math::colour::linear_from_srgb8;
-use crate::math::round_to_f32;
+use crate::math::colour::SRGB_DECODE;
 use crate::math::simd::*;
-use std::sync::LazyLock;
-
-/// Linear values of the sRGB codes.
-static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
-    let mut linear = [0.0; 256];
-    (0..=255).zip(&mut linear).for_each(|(code, value)| *value = round_to_f32(linear_from_srgb8(code)));
-    linear
-});
 
 /// Lays straight-alpha sRGB pixels over white, mixing in linear light: `c·α + 1 − α`. What is opaque
 /// keeps its codes.
 pub(super) fn over_white(level: Level, pixels: &[[u8; 4]]) -> Vec<[u8; 4]> {
     let mut over = pixels.to_vec();
-    dispatch!(level, simd => over_white_kernel(simd, &LINEAR, &mut over));
+    dispatch!(level, simd => over_white_kernel(simd, &SRGB_DECODE, &mut over));
     over
 }
 
@@ -53,6 +44,7 @@ fn byte(code: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::colour::linear_from_srgb8;
     use crate::math::colour::srgb_from_linear;
 
     #[test]

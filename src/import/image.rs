@@ -2,7 +2,8 @@
 
 use super::ImportError;
 use crate::limits::Limits;
-use crate::model::sky::texels::{BRIGHTEST, Picture, Texels};
+use crate::math::colour::BRIGHTEST;
+use crate::model::sky::texels::{Picture, Texels};
 use crate::model::texture::Image;
 use image::codecs::hdr::HdrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};

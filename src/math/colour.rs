@@ -1,5 +1,16 @@
 //! sRGB and linear RGB.
 
+use super::round_to_f32;
+use std::sync::LazyLock;
+
+/// The largest radiance: that of a half float, so that every format downstream can hold it.
+pub const BRIGHTEST: f32 = 65504.0;
+
+/// Linear values of the 256 sRGB codes.
+pub static SRGB_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|code| round_to_f32(linear_from_srgb8(u8::try_from(code).unwrap_or(u8::MAX))))
+});
+
 /// Linear value of the sRGB code `c / 255` (IEC 61966-2-1), in f64.
 #[must_use]
 pub fn linear_from_srgb8(c: u8) -> f64 {

@@ -32,8 +32,8 @@ pub use target::{Frame, Pixels};
 pub use work::{Cancelled, Work};
 
 use crate::plan::{Output, Plan};
-use geometry::Bins;
 use geometry::bin::TileGrid;
+use geometry::{Bins, Counts};
 use post::{Effect, LinearFrame};
 use shade::Lighting;
 use shade::light::LightSource;
@@ -86,7 +86,11 @@ fn draw_each(plans: &[Plan], effects: &[&dyn Effect], work: &Work) -> Result<Vec
                 passes.len() - 1
             }),
         })?;
-        frames.push(draw_output(plan, &passes[pass].1, &shadow_maps, effects, timings, work)?);
+        let mut frame = draw_output(plan, &passes[pass].1, &shadow_maps, effects, timings, work)?;
+        if drawn.is_some() {
+            frame.stats.geometry = Counts::default();
+        }
+        frames.push(frame);
     }
     Ok(frames)
 }

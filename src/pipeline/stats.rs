@@ -32,7 +32,7 @@ impl TileTimes {
 /// What a frame did.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stats {
-    /// Of the camera's pass.
+    /// Of the camera's pass; nothing for a frame that shares the pass of one before it.
     pub geometry: Counts,
     /// Fragments shaded.
     pub shaded: u64,

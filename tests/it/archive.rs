@@ -97,6 +97,19 @@ async fn its_description_says_what_the_values_mean() {
 }
 
 #[tokio::test]
+async fn the_triangles_of_all_its_pictures_are_counted_once() {
+    let client = boxed().await;
+    let counts = |reply: &Reply| {
+        let stats = reply.header("render-stats").to_owned();
+        ["triangles=", "drawn="]
+            .map(|name| stats.split(", ").find_map(|s| s.strip_prefix(name)).map(str::to_owned))
+    };
+    let one = counts(&client.get("/scenes/t/frame.png?output=depth").await);
+    assert_eq!(one[0].as_deref(), Some("14"));
+    assert_eq!(counts(&client.get("/scenes/t/frame.zip?outputs=depth,instance,wireframe").await), one);
+}
+
+#[tokio::test]
 async fn a_patch_gives_the_archive_of_a_changed_scene() {
     let client = boxed().await;
     let patch = json!({ "render": { "width": 20, "height": 10 } });

@@ -1,7 +1,8 @@
 //! Cube maps: six square pictures of everything around.
 
 use super::panorama::with_alpha;
-use super::texels::{Picture, Texels, decode_table};
+use super::texels::{Picture, Texels};
+use crate::math::colour::SRGB_DECODE;
 use crate::math::colour::srgb_from_linear;
 use crate::model::texture::mips::{half, halve};
 use std::fmt;
@@ -130,7 +131,7 @@ fn check(faces: &[Picture; 6]) -> Result<(), Vec<FaceFault>> {
 
 /// The next level of a face, without a border.
 fn halved(side: usize, face: &Texels) -> Texels {
-    let decode = decode_table();
+    let decode = &*SRGB_DECODE;
     let below = halve(side, side, |x, y| with_alpha(face.linear(y * side + x, decode))).texels;
     Texels::Linear(below.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
 }
@@ -152,7 +153,7 @@ impl CubeLevel {
         let texels = match srgb {
             Some(faces) => Texels::Srgb8(bordered(side, |face, at| faces[face][at], mean_of_codes)),
             None => {
-                let decode = decode_table();
+                let decode = &*SRGB_DECODE;
                 let texel = |face: usize, at: usize| faces[face].linear(at, decode);
                 Texels::Linear(bordered(side, texel, mean_of_values))
             }
@@ -167,7 +168,7 @@ fn mean_of_values(texels: [[f32; 3]; 3]) -> [f32; 3] {
 }
 
 fn mean_of_codes(texels: [[u8; 4]; 3]) -> [u8; 4] {
-    let decode = decode_table();
+    let decode = &*SRGB_DECODE;
     let linear = texels.map(|[r, g, b, _]| [r, g, b].map(|code| decode[usize::from(code)]));
     let [r, g, b] = mean_of_values(linear).map(code);
     [r, g, b, u8::MAX]
@@ -268,7 +269,7 @@ mod tests {
     fn at(level: &CubeLevel, face: usize, x: i64, y: i64) -> [f32; 3] {
         let wide = signed(level.side) + 2;
         let i = (i64::try_from(face).unwrap() * wide + y + 1) * wide + x + 1;
-        level.texels.linear(usize::try_from(i).unwrap(), decode_table())
+        level.texels.linear(usize::try_from(i).unwrap(), &SRGB_DECODE)
     }
 
     #[test]
@@ -319,7 +320,7 @@ mod tests {
         assert_eq!(cube.levels.len(), 2);
         for level in &cube.levels {
             let count = 6 * (level.side + 2) * (level.side + 2);
-            assert!((0..count).all(|i| level.texels.linear(i, decode_table()) == [1.0; 3]));
+            assert!((0..count).all(|i| level.texels.linear(i, &SRGB_DECODE) == [1.0; 3]));
         }
     }
 

@@ -1,6 +1,7 @@
 //! Equirectangular pictures of everything around.
 
-use super::texels::{Picture, Texels, decode_table};
+use super::texels::{Picture, Texels};
+use crate::math::colour::SRGB_DECODE;
 use crate::model::texture::mips::{half, halve};
 use std::fmt;
 
@@ -61,7 +62,7 @@ impl PanoramaLevel {
         if self.width.max(self.height) <= 1 {
             return None;
         }
-        let decode = decode_table();
+        let decode = &*SRGB_DECODE;
         let above = |x: usize, y: usize| with_alpha(self.texels.linear(y * self.width + x, decode));
         let texels = halve(self.width, self.height, above).texels;
         let texels = Texels::Linear(texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect());

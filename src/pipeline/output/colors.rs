@@ -1,9 +1,9 @@
 //! Linear colour to sRGB bytes, or to floats.
 
 use crate::math::approx;
+use crate::math::colour::BRIGHTEST;
 use crate::math::simd::*;
 use crate::pipeline::post::{BAND, LinearFrame, pointwise};
-use crate::pipeline::shade::BRIGHTEST;
 use crate::pipeline::tiles::{Resolved, Tile};
 use crate::pipeline::work::{Cancelled, Work};
 use crate::plan::Pointwise;

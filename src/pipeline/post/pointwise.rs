@@ -2,9 +2,9 @@
 
 use super::frame::{LinearFrame, bands};
 use super::{Effect, finite, luminance};
+use crate::math::colour::BRIGHTEST;
 use crate::math::simd::*;
 use crate::pipeline::output::Row;
-use crate::pipeline::shade::BRIGHTEST;
 use crate::pipeline::work::{Cancelled, Work};
 use crate::plan::{Curve, Pointwise};
 

@@ -22,9 +22,6 @@ use varyings::Varyings;
 /// Fragments of one block.
 pub const BLOCK: usize = 64;
 
-/// The largest radiance: that of a half float, so that every format downstream can hold it.
-pub const BRIGHTEST: f32 = 65504.0;
-
 /// One triangle's share of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fragment {

@@ -2,7 +2,8 @@
 
 use super::light::{self, Reflectance};
 use super::varyings::{self, Records, Source, Varyings};
-use super::{BLOCK, BRIGHTEST, Fragment, Lighting, Scratch, alpha, relief, texture};
+use super::{BLOCK, Fragment, Lighting, Scratch, alpha, relief, texture};
+use crate::math::colour::{BRIGHTEST, SRGB_DECODE};
 use crate::math::simd::*;
 use crate::model::{self, Texture};
 use crate::pipeline::shader::{Outputs, PixelShader, Shading, Visible};
@@ -196,7 +197,7 @@ fn add_lights(
 
 /// A normal's component as a colour: the linear value of the code that `output=normal` shows.
 fn normal_as_colour(component: f32) -> f32 {
-    texture::SRGB_DECODE[usize::from(normal_code(component))]
+    SRGB_DECODE[usize::from(normal_code(component))]
 }
 
 /// `floor(255 · (n/2 + ½) + ½)`.

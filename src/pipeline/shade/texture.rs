@@ -6,8 +6,9 @@ mod heights;
 pub use heights::sample_slopes;
 
 use super::BLOCK;
+use crate::math::colour::{self, SRGB_DECODE};
 use crate::math::simd::*;
-use crate::math::{approx, colour, round_to_f32};
+use crate::math::{approx, round_to_f32};
 use crate::model::texture::{ColorSpace, Filter, Texture, Wrap};
 use std::sync::LazyLock;
 
@@ -25,11 +26,6 @@ impl Default for Coordinates {
         Self { uv: [[0.0; BLOCK]; 2], per_pixel: [[0.0; BLOCK]; 4] }
     }
 }
-
-/// Linear values of the 256 sRGB codes.
-pub static SRGB_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|c| round_to_f32(colour::linear_from_srgb8(u8::try_from(c).unwrap_or(255))))
-});
 
 /// `code / 255`.
 static UNORM_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {

@@ -1,12 +1,13 @@
 //! Cube maps, filtered across their edges.
 
+use super::Sight;
 use super::filter::{Radiance, level_of_detail, mix, trilinear, whole};
 use super::rays::Rays;
 use crate::math::View;
+use crate::math::colour::SRGB_DECODE;
 use crate::math::simd::*;
 use crate::model::sky::CubeMap;
 use crate::model::sky::cube_map::CubeLevel;
-use crate::model::sky::texels::decode_table;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -70,30 +71,6 @@ impl CubeMapView {
         Self { map: map.clone(), rays, per_pixel: rays.per_pixel() }
     }
 
-    /// Radiance along the lines of sight through eight screen points.
-    #[inline(always)]
-    pub fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S> {
-        let ray = self.rays.through(x, y);
-        let faces = Faces::of(simd, ray);
-        let [across, down, away] = faces.components(ray);
-        let (s, t) = (across / away, down / away);
-        let level = self.level(simd, faces, [s, t, away]);
-        let numbers = faces.numbers(simd);
-        let decode = decode_table();
-        let mut out = [[0.0; LANES]; 3];
-        for lane in 0..LANES {
-            let texel = trilinear(
-                level[lane],
-                #[inline(always)]
-                |level| bilinear(&self.map.levels[level], numbers[lane], [s[lane], t[lane]], decode),
-            );
-            for c in 0..3 {
-                out[c][lane] = texel[c];
-            }
-        }
-        Vec3x8::load(simd, &out, 0)
-    }
-
     /// Level of detail from the texels that a pixel steps over, from the derivatives of (s, t) along
     /// the screen's axes.
     #[inline(always)]
@@ -109,6 +86,31 @@ impl CubeMapView {
         );
         let squared = max(squared(self.per_pixel[0]), squared(self.per_pixel[1]));
         level_of_detail(squared * (half_side * half_side), self.map.levels.len())
+    }
+}
+
+impl Sight for CubeMapView {
+    #[inline(always)]
+    fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S> {
+        let ray = self.rays.through(x, y);
+        let faces = Faces::of(simd, ray);
+        let [across, down, away] = faces.components(ray);
+        let (s, t) = (across / away, down / away);
+        let level = self.level(simd, faces, [s, t, away]);
+        let numbers = faces.numbers(simd);
+        let decode = &*SRGB_DECODE;
+        let mut out = [[0.0; LANES]; 3];
+        for lane in 0..LANES {
+            let texel = trilinear(
+                level[lane],
+                #[inline(always)]
+                |level| bilinear(&self.map.levels[level], numbers[lane], [s[lane], t[lane]], decode),
+            );
+            for c in 0..3 {
+                out[c][lane] = texel[c];
+            }
+        }
+        Vec3x8::load(simd, &out, 0)
     }
 }
 

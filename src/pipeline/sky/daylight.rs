@@ -1,5 +1,6 @@
 //! The procedural sky, pixel by pixel.
 
+use super::Sight;
 use super::rays::Rays;
 use crate::math::simd::*;
 use crate::math::{View, approx, round_to_f32};
@@ -44,30 +45,6 @@ impl DaylightView {
             pixel_angle: if right > down { right } else { down },
             haze_scale: round_to_f32(haze_scale()),
         }
-    }
-
-    /// Radiance along the lines of sight through eight screen points.
-    #[inline(always)]
-    pub fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S> {
-        let splat = always(
-            #[inline(always)]
-            |v: f32| f32x8::splat(simd, v),
-        );
-        let ray = self.rays.through(x, y);
-        let length = ray.dot(ray).sqrt();
-        let sight = Vec3x8 { x: ray.x / length, y: ray.y / length, z: ray.z / length };
-
-        // Below the horizon: the sky at the horizon, and the plain in front of it.
-        let up = max(sight.y, splat(0.0));
-        let above = Vec3x8 { y: up, ..sight };
-        let level = max(above.dot(above).sqrt(), splat(f32::MIN_POSITIVE));
-        let above = Vec3x8 { x: above.x / level, y: up / level, z: above.z / level };
-        let sky = self.scattered(simd, above);
-        let disc = Vec3x8::splat(simd, self.sky.disc).scale(self.disc_coverage(simd, sight, length));
-        let hidden = ground_share(simd, sight.y);
-        let ground = Vec3x8::splat(simd, self.sky.ground);
-        let seen = sky + disc;
-        seen + (ground - seen).scale(hidden) + Vec3x8::splat(simd, self.sky.night)
     }
 
     /// Light scattered towards the viewer from a direction at or above the horizon.
@@ -133,6 +110,31 @@ impl DaylightView {
             |x: f32x8<S>| min(max(x, zero), one),
         );
         unit((radius - chord) / pixel + 0.5) * unit(sight.y / pixel + 0.5)
+    }
+}
+
+impl Sight for DaylightView {
+    #[inline(always)]
+    fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S> {
+        let splat = always(
+            #[inline(always)]
+            |v: f32| f32x8::splat(simd, v),
+        );
+        let ray = self.rays.through(x, y);
+        let length = ray.dot(ray).sqrt();
+        let sight = Vec3x8 { x: ray.x / length, y: ray.y / length, z: ray.z / length };
+
+        // Below the horizon: the sky at the horizon, and the plain in front of it.
+        let up = max(sight.y, splat(0.0));
+        let above = Vec3x8 { y: up, ..sight };
+        let level = max(above.dot(above).sqrt(), splat(f32::MIN_POSITIVE));
+        let above = Vec3x8 { x: above.x / level, y: up / level, z: above.z / level };
+        let sky = self.scattered(simd, above);
+        let disc = Vec3x8::splat(simd, self.sky.disc).scale(self.disc_coverage(simd, sight, length));
+        let hidden = ground_share(simd, sight.y);
+        let ground = Vec3x8::splat(simd, self.sky.ground);
+        let seen = sky + disc;
+        seen + (ground - seen).scale(hidden) + Vec3x8::splat(simd, self.sky.night)
     }
 }
 

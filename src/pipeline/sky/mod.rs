@@ -8,8 +8,8 @@ mod filter;
 mod panorama;
 pub mod rays;
 
-use super::shade::BRIGHTEST;
 use super::tiles::cover::Region;
+use crate::math::colour::BRIGHTEST;
 use crate::math::simd::*;
 use crate::math::{Projection, View, approx, round_to_f32};
 use crate::scene;
@@ -33,6 +33,12 @@ pub enum Background {
     Panorama(PanoramaView),
     /// Nothing: alpha 0.
     Transparent,
+}
+
+/// What is different along every line of sight.
+trait Sight {
+    /// Radiance along the lines of sight through eight screen points, in sub-pixels.
+    fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S>;
 }
 
 /// A gradient and the elevations it is seen at.
@@ -89,34 +95,10 @@ impl Background {
         match self {
             Self::Color(color) => fill(pixels, color.min(Vec3::splat(BRIGHTEST)), out),
             Self::Transparent => fill(pixels, Vec3::ZERO, out),
-            Self::Gradient(gradient) => place.draw(
-                simd,
-                pixels,
-                out,
-                #[inline(always)]
-                |x, y| gradient.radiance(simd, narrow(x), narrow(y)),
-            ),
-            Self::Daylight(sky) => place.draw(
-                simd,
-                pixels,
-                out,
-                #[inline(always)]
-                |x, y| sky.radiance(simd, x, y),
-            ),
-            Self::CubeMap(map) => place.draw(
-                simd,
-                pixels,
-                out,
-                #[inline(always)]
-                |x, y| map.radiance(simd, x, y),
-            ),
-            Self::Panorama(panorama) => place.draw(
-                simd,
-                pixels,
-                out,
-                #[inline(always)]
-                |x, y| panorama.radiance(simd, x, y),
-            ),
+            Self::Gradient(gradient) => place.draw(simd, pixels, gradient, out),
+            Self::Daylight(sky) => place.draw(simd, pixels, sky, out),
+            Self::CubeMap(map) => place.draw(simd, pixels, map, out),
+            Self::Panorama(panorama) => place.draw(simd, pixels, panorama, out),
         }
     }
 }
@@ -135,10 +117,12 @@ impl Gradient {
             unit: unit.map(round_to_f32),
         }
     }
+}
 
-    /// Colour along the lines of sight through eight screen points.
+impl Sight for Gradient {
     #[inline(always)]
-    fn radiance<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> Vec3x8<S> {
+    fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S> {
+        let (x, y) = (narrow(x), narrow(y));
         let height = x * self.elevation[0] + y * self.elevation[1] + self.elevation[2];
         let (a, b) = (x * self.unit[0], y * self.unit[1]);
         let length = (a * a + b * b + 1.0).sqrt();
@@ -157,15 +141,9 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Writes `radiance(x, y)` of the centres of `pixels`, eight at a time, to their places.
+    /// Writes what is seen through the centres of `pixels`, eight at a time, to their places.
     #[inline(always)]
-    fn draw<S: Simd>(
-        self,
-        simd: S,
-        pixels: &[u32],
-        out: &mut [Vec<f32>; 3],
-        radiance: impl Fn(f64x8<S>, f64x8<S>) -> Vec3x8<S>,
-    ) {
+    fn draw<S: Simd>(self, simd: S, pixels: &[u32], sight: &impl Sight, out: &mut [Vec<f32>; 3]) {
         for group in pixels.chunks(LANES) {
             let pixel = always(
                 #[inline(always)]
@@ -181,7 +159,7 @@ impl Place<'_> {
                 #[inline(always)]
                 |lane| centre(self.region.origin[1], pixel(lane) / self.side),
             );
-            let color = radiance(x, y);
+            let color = sight.radiance(simd, x, y);
             let brightest = f32x8::splat(simd, BRIGHTEST);
             let color = [color.x, color.y, color.z].map(always(
                 #[inline(always)]

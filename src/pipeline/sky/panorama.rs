@@ -1,12 +1,13 @@
 //! Panoramas, filtered over what a pixel covers, also at the poles.
 
+use super::Sight;
 use super::filter::{Radiance, level_of_detail, mix, trilinear, whole};
 use super::rays::Rays;
+use crate::math::colour::SRGB_DECODE;
 use crate::math::simd::*;
 use crate::math::{View, approx};
 use crate::model::sky::Panorama;
 use crate::model::sky::panorama::PanoramaLevel;
-use crate::model::sky::texels::decode_table;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, TAU};
 use std::sync::Arc;
@@ -39,35 +40,6 @@ impl PanoramaView {
         Self { panorama: panorama.clone(), rays, per_pixel: rays.per_pixel() }
     }
 
-    /// Radiance along the lines of sight through eight screen points.
-    ///
-    /// Rows are filtered by mips, as far as a pixel reaches in elevation; along the row, texels are
-    /// summed as far as it reaches in azimuth, which near a pole is far more.
-    #[inline(always)]
-    pub fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S> {
-        let angles = self.angles(simd, self.rays.through(x, y));
-        let levels = &self.panorama.levels;
-        let rows_per_radian = count(levels[0].height) * FRAC_1_PI;
-        let rows_squared = angles.elevation_step_squared * (rows_per_radian * rows_per_radian);
-        let level = level_of_detail(rows_squared, levels.len());
-        let u = angles.azimuth * (0.5 * FRAC_1_PI) + 0.5;
-        let v = f32x8::splat(simd, 0.5) - angles.elevation * FRAC_1_PI;
-        let reach = angles.azimuth_step * (0.5 * FRAC_1_PI);
-        let decode = decode_table();
-        let mut out = [[0.0; LANES]; 3];
-        for lane in 0..LANES {
-            let texel = trilinear(
-                level[lane],
-                #[inline(always)]
-                |level| between_rows(&levels[level], u[lane], v[lane], reach[lane], decode),
-            );
-            for c in 0..3 {
-                out[c][lane] = texel[c];
-            }
-        }
-        Vec3x8::load(simd, &out, 0)
-    }
-
     /// Angles of rays with their derivatives along the screen's axes.
     #[inline(always)]
     fn angles<S: Simd>(&self, simd: S, ray: Vec3x8<S>) -> Angles<S> {
@@ -94,6 +66,35 @@ impl PanoramaView {
             azimuth_step: min(max(right.0, down.0), f32x8::splat(simd, TAU)),
             elevation_step_squared: max(right.1, down.1),
         }
+    }
+}
+
+impl Sight for PanoramaView {
+    /// Rows are filtered by mips, as far as a pixel reaches in elevation; along the row, texels are
+    /// summed as far as it reaches in azimuth, which near a pole is far more.
+    #[inline(always)]
+    fn radiance<S: Simd>(&self, simd: S, x: f64x8<S>, y: f64x8<S>) -> Vec3x8<S> {
+        let angles = self.angles(simd, self.rays.through(x, y));
+        let levels = &self.panorama.levels;
+        let rows_per_radian = count(levels[0].height) * FRAC_1_PI;
+        let rows_squared = angles.elevation_step_squared * (rows_per_radian * rows_per_radian);
+        let level = level_of_detail(rows_squared, levels.len());
+        let u = angles.azimuth * (0.5 * FRAC_1_PI) + 0.5;
+        let v = f32x8::splat(simd, 0.5) - angles.elevation * FRAC_1_PI;
+        let reach = angles.azimuth_step * (0.5 * FRAC_1_PI);
+        let decode = &*SRGB_DECODE;
+        let mut out = [[0.0; LANES]; 3];
+        for lane in 0..LANES {
+            let texel = trilinear(
+                level[lane],
+                #[inline(always)]
+                |level| between_rows(&levels[level], u[lane], v[lane], reach[lane], decode),
+            );
+            for c in 0..3 {
+                out[c][lane] = texel[c];
+            }
+        }
+        Vec3x8::load(simd, &out, 0)
     }
 }
 
