@@ -1,7 +1,7 @@
 //! Whole frames, from the plan to finished pixels in memory, the shadow map redrawn in each.
 //!
-//! `cargo bench --bench frames` names its inputs: the demo scene, a mesh of many small triangles, and
-//! a floor that is all texture.
+//! `cargo bench --bench frames` names its inputs: the demo scene, a mesh of many small triangles, a floor
+//! that is all texture, and balls in the soft shadows of a lamp.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use rasterd::limits::Limits;
@@ -37,6 +37,28 @@ fn floor() -> Value {
     })
 }
 
+/// Twenty balls of 3024 triangles around a lamp, on a floor.
+fn lamp() -> Value {
+    let balls = (0..20u32).map(|i| {
+        let angle = f64::from(i) * 2.399_963;
+        let distance = 0.55 * f64::from(i + 1).sqrt();
+        let at = [distance * libm::cos(angle), 0.25, distance * libm::sin(angle)];
+        (format!("ball {i}"), json!({ "mesh": "ball", "translation": at }))
+    });
+    let floor = ("floor".to_owned(), json!({ "mesh": "floor" }));
+    json!({
+        "meshes": {
+            "ball": { "type": "sphere", "radius": 0.25, "segments": 56, "rings": 28 },
+            "floor": { "type": "plane", "size": [8, 8] },
+        },
+        "instances": balls.chain([floor]).collect::<serde_json::Map<_, _>>(),
+        "lights": { "lamp": { "type": "point", "position": [0.3, 1.6, 0.2], "intensity": 2,
+            "shadow": { "filter": "pcss", "light_radius": 0.12 } } },
+        "camera": { "position": [0, 4.2, 4.6], "target": [0, 0.1, 0] },
+        "post": [{ "type": "tonemap", "operator": "aces" }],
+    })
+}
+
 fn frames(c: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().build().expect("threads start");
     let cancel = AtomicBool::new(false);
@@ -45,6 +67,7 @@ fn frames(c: &mut Criterion) {
         ("demo 800x600 x4", compiled(&demo::document(), &demo::files()), 800, 600, 4),
         ("dense 1280x720 x1", compiled(&dense(), &Files::default()), 1280, 720, 1),
         ("floor 1280x720 x1", compiled(&floor(), &Files::default()), 1280, 720, 1),
+        ("lamp 800x800 x1", compiled(&lamp(), &Files::default()), 800, 800, 1),
     ];
     for (name, scene, width, height, samples) in inputs {
         let request = FrameRequest {

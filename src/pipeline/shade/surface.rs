@@ -115,10 +115,19 @@ fn shade_block(
             }
         }
     }
-    for c in out.iter_mut().flatten() {
-        // Written so that what is no number becomes 0.
-        *c = if *c > 0.0 { if *c < BRIGHTEST { *c } else { BRIGHTEST } } else { 0.0 };
-    }
+    bound(level, count, out);
+}
+
+/// Bounds radiance to 0–[`BRIGHTEST`]; what is no number becomes 0.
+fn bound(level: Level, count: usize, out: &mut [[f32; BLOCK]; 3]) {
+    dispatch!(level, simd => {
+        let (zero, brightest) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, BRIGHTEST));
+        for channel in out {
+            for eight in channel[..count.next_multiple_of(LANES)].chunks_exact_mut(LANES) {
+                min(max(f32x8::from_slice(simd, eight), zero), brightest).store_slice(eight);
+            }
+        }
+    });
 }
 
 /// The diffuse colour of a block, with map and vertex colours.
@@ -151,11 +160,15 @@ fn fill(out: &mut [[f32; BLOCK]; 3], color: Vec3) {
 fn multiply(level: Level, map: &Texture, varyings: &Varyings, count: usize, out: &mut [[f32; BLOCK]; 3]) {
     let mut texels = [[0.0; BLOCK]; 4];
     texture::sample(level, map, &varyings.texture, count, &mut texels);
-    for (channel, texel) in out.iter_mut().zip(&texels) {
-        for (factor, t) in channel.iter_mut().zip(texel) {
-            *factor *= t;
+    dispatch!(level, simd => {
+        for (channel, texels) in out.iter_mut().zip(&texels) {
+            for at in (0..count).step_by(LANES) {
+                let factor = f32x8::from_slice(simd, &texels[at..at + LANES]);
+                let color = &mut channel[at..at + LANES];
+                (f32x8::from_slice(simd, color) * factor).store_slice(color);
+            }
         }
-    }
+    });
 }
 
 /// Adds ambient light and that of every light.
@@ -181,12 +194,12 @@ fn add_lights(
     let reflectance = Reflectance { ambient: surface.ambient, diffuse, specular };
     light::add_ambient(level, lighting.ambient, &reflectance, count, out);
     for source in &lighting.lights {
-        let facing = light::facing(level, source, varyings, count);
-        if facing == 0 {
-            continue;
-        }
         match source.shadow {
             Some(map) if surface.receives_shadow => {
+                let facing = light::facing(level, source, varyings, count);
+                if facing == 0 {
+                    continue;
+                }
                 lighting.maps[map].visibility(level, &varyings.shadow[map], facing, visibility);
             }
             _ => *visibility = [1.0; BLOCK],
