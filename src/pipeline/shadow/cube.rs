@@ -9,7 +9,7 @@ mod receiver;
 
 use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
-use super::penumbra::{Light, Taps, Verdict, filtered, soft};
+use super::penumbra::{Light, MapFilter, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
 use super::{HALF_TEXEL, PCF_TAPS};
 use crate::math::round_to_f32;
@@ -43,12 +43,7 @@ struct Lens {
     clearance: f32,
 }
 
-#[derive(Debug, PartialEq)]
-enum CubeFilter {
-    Hard,
-    Pcf { pyramids: Pyramids, disc: Disc, kernel: PcfKernel },
-    Pcss { pyramids: Pyramids, search: Disc, filter: Disc, size: SoftKernel },
-}
+type CubeFilter = MapFilter<Pyramids, PcfKernel, SoftKernel>;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PcfKernel {
@@ -104,7 +99,7 @@ impl CubeMap {
             offset: round_to_f32(reach),
             clearance: round_to_f32(0.5 * pass.bias / focal_length),
         };
-        let filter = CubeFilter::new(pass, &sides, focal_length, work)?;
+        let filter = filter(pass, &sides, focal_length, work)?;
         Ok(Self { sides, resolution: view.width, lens, filter })
     }
 
@@ -125,14 +120,14 @@ impl CubeMap {
             let out = &mut out[at..at + LANES];
             match &self.filter {
                 CubeFilter::Hard => self.hard(simd, &lifted).store_slice(out),
-                CubeFilter::Pcf { pyramids, disc, kernel } => {
+                CubeFilter::Pcf { pyramid: pyramids, disc, kernel } => {
                     let maps = Maps { cube: self, pyramids };
                     for lane in set_bits(asked) {
                         let receiver = lifted.lane(lane);
                         out[lane] = filtered(simd, &maps, disc, &receiver, &kernel.around(&receiver));
                     }
                 }
-                CubeFilter::Pcss { pyramids, search, filter, size } => {
+                CubeFilter::Pcss { pyramid: pyramids, search, filter, size } => {
                     let light = Soft { maps: Maps { cube: self, pyramids }, size };
                     for lane in set_bits(asked) {
                         out[lane] = soft(simd, &light, search, filter, &lifted.lane(lane));
@@ -295,39 +290,38 @@ impl Lens {
     }
 }
 
-impl CubeFilter {
-    fn new(
-        pass: &ShadowPass,
-        sides: &[Option<DepthMap>; 6],
-        focal_length: f64,
-        work: &Work,
-    ) -> Result<Self, Cancelled> {
-        let pyramids = || -> Result<Pyramids, Cancelled> {
-            let mut pyramids = [const { None }; 6];
-            for (pyramid, side) in pyramids.iter_mut().zip(sides) {
-                *pyramid = side.as_ref().map(|map| Pyramid::over(map, work)).transpose()?;
-            }
-            Ok(pyramids)
-        };
-        let bias = round_to_f32(pass.bias);
-        Ok(match &pass.filter {
-            Filter::Hard => Self::Hard,
-            Filter::Pcf { radius } => {
-                let kernel = PcfKernel { tangent: round_to_f32(radius / focal_length), bias };
-                Self::Pcf { pyramids: pyramids()?, disc: Disc::new(PCF_TAPS), kernel }
-            }
-            Filter::Pcss(Pcss { light_radius, search_radius, search_taps, filter_taps }) => Self::Pcss {
-                pyramids: pyramids()?,
-                search: Disc::new(*search_taps),
-                filter: Disc::new(*filter_taps),
-                size: SoftKernel {
-                    light_radius: round_to_f32(*light_radius),
-                    search: search_radius.map(|radius| round_to_f32(radius / focal_length)),
-                    bias,
-                },
+/// Reads the maps of `sides` as the plan says.
+fn filter(
+    pass: &ShadowPass,
+    sides: &[Option<DepthMap>; 6],
+    focal_length: f64,
+    work: &Work,
+) -> Result<CubeFilter, Cancelled> {
+    let pyramids = || -> Result<Pyramids, Cancelled> {
+        let mut pyramids = [const { None }; 6];
+        for (pyramid, side) in pyramids.iter_mut().zip(sides) {
+            *pyramid = side.as_ref().map(|map| Pyramid::over(map, work)).transpose()?;
+        }
+        Ok(pyramids)
+    };
+    let bias = round_to_f32(pass.bias);
+    Ok(match &pass.filter {
+        Filter::Hard => CubeFilter::Hard,
+        Filter::Pcf { radius } => {
+            let kernel = PcfKernel { tangent: round_to_f32(radius / focal_length), bias };
+            CubeFilter::Pcf { pyramid: pyramids()?, disc: Disc::new(PCF_TAPS), kernel }
+        }
+        Filter::Pcss(Pcss { light_radius, search_radius, search_taps, filter_taps }) => CubeFilter::Pcss {
+            pyramid: pyramids()?,
+            search: Disc::new(*search_taps),
+            filter: Disc::new(*filter_taps),
+            size: SoftKernel {
+                light_radius: round_to_f32(*light_radius),
+                search: search_radius.map(|radius| round_to_f32(radius / focal_length)),
+                bias,
             },
-        })
-    }
+        },
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
-use super::penumbra::{Light, Taps, Verdict, filtered, soft};
+use super::penumbra::{Light, MapFilter, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
 use super::{DEPTH_TOLERANCE, PCF_TAPS, WIDEST_CONE};
 use crate::math::round_to_f32;
@@ -15,14 +15,7 @@ use crate::plan::{Face, Filter, Pcss, ShadowPass};
 #[derive(Debug, PartialEq)]
 pub struct DirectionalMap {
     depth: DepthMap,
-    filter: MapFilter,
-}
-
-#[derive(Debug, PartialEq)]
-enum MapFilter {
-    Hard,
-    Pcf { pyramid: Pyramid, disc: Disc, kernel: Kernel },
-    Pcss { pyramid: Pyramid, search: Disc, filter: Disc, size: SoftKernel },
+    filter: MapFilter<Pyramid, Kernel, SoftKernel>,
 }
 
 /// A kernel around a receiver.

@@ -8,6 +8,15 @@ use super::disc::Disc;
 use super::pyramid::DepthRange;
 use crate::math::simd::*;
 
+/// How maps are read: with pyramids `P`, by kernels `K` of one size or of sizes `S` that follow what
+/// blocks the light.
+#[derive(Debug, PartialEq)]
+pub(super) enum MapFilter<P, K, S> {
+    Hard,
+    Pcf { pyramid: P, disc: Disc, kernel: K },
+    Pcss { pyramid: P, search: Disc, filter: Disc, size: S },
+}
+
 /// What a pyramid says of a kernel.
 pub(super) enum Verdict {
     /// No tap is blocked.
