@@ -3,7 +3,7 @@
 use super::ImportError;
 use crate::limits::Limits;
 use crate::math::colour::BRIGHTEST;
-use crate::model::sky::texels::{Picture, Texels};
+use crate::model::sky::texels::{Picture, PictureSize, Texels};
 use crate::model::texture::Image;
 use image::codecs::hdr::HdrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
@@ -83,11 +83,7 @@ impl ImageError {
 /// # Errors
 /// If it cannot be read or is larger than `limits` allow. Sizes are checked before decoding.
 pub fn decode(bytes: &[u8], file: &str, limits: &Limits) -> Result<Image, ImageError> {
-    let format = format_of(bytes, file).ok_or(ImageError::UnknownFormat)?;
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.limits(decoder_limits(limits));
-    let decoder = reader.into_decoder().map_err(|error| decoding_error(&error, limits))?;
-    check_size(&decoder, limits)?;
+    let decoder = decoder(bytes, file, limits)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(|error| decoding_error(&error, limits))?;
     let rgba = decoded.into_rgba8();
     let (width, height) = rgba.dimensions();
@@ -103,13 +99,10 @@ pub fn decode(bytes: &[u8], file: &str, limits: &Limits) -> Result<Image, ImageE
 /// # Errors
 /// As [`decode`].
 pub fn decode_picture(bytes: &[u8], file: &str, limits: &Limits) -> Result<Picture, ImageError> {
-    // Radiance itself begins its files with `#?RADIANCE`, some other programs with `#?RGBE`.
-    if !bytes.starts_with(b"#?") {
+    if !is_radiance(bytes) {
         return decode(bytes, file, limits).map(Picture::from);
     }
-    let decoder =
-        HdrDecoder::new_nonstrict(Cursor::new(bytes)).map_err(|error| decoding_error(&error, limits))?;
-    check_size(&decoder, limits)?;
+    let decoder = radiance_decoder(bytes, limits)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(|error| decoding_error(&error, limits))?;
     let rgb = decoded.into_rgb32f();
     let (width, height) = rgb.dimensions();
@@ -117,6 +110,50 @@ pub fn decode_picture(bytes: &[u8], file: &str, limits: &Limits) -> Result<Pictu
     let scrubbed = |value: f32| if value > 0.0 { value.min(BRIGHTEST) } else { 0.0 };
     let texels = texels.iter().map(|texel| texel.map(scrubbed)).collect();
     Ok(Picture { width, height, texels: Texels::Linear(texels) })
+}
+
+/// The size of what [`decode_picture`] will make of a file, from its header; an image has that of a picture
+/// that is not linear.
+///
+/// # Errors
+/// As [`decode_picture`], but for damage behind the header.
+pub fn picture_size(bytes: &[u8], file: &str, limits: &Limits) -> Result<PictureSize, ImageError> {
+    let is_linear = is_radiance(bytes);
+    let (width, height) = match is_linear {
+        true => radiance_decoder(bytes, limits)?.dimensions(),
+        false => decoder(bytes, file, limits)?.dimensions(),
+    };
+    Ok(PictureSize { width, height, is_linear })
+}
+
+/// Radiance itself begins its files with `#?RADIANCE`, some other programs with `#?RGBE`.
+fn is_radiance(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"#?")
+}
+
+/// Has read the header of a Radiance HDR whose size is within `limits`.
+fn radiance_decoder<'a>(
+    bytes: &'a [u8],
+    limits: &Limits,
+) -> Result<HdrDecoder<Cursor<&'a [u8]>>, ImageError> {
+    let decoder =
+        HdrDecoder::new_nonstrict(Cursor::new(bytes)).map_err(|error| decoding_error(&error, limits))?;
+    check_size(&decoder, limits)?;
+    Ok(decoder)
+}
+
+/// Has read the header of a file of any other format whose size is within `limits`.
+fn decoder<'a>(
+    bytes: &'a [u8],
+    file: &str,
+    limits: &Limits,
+) -> Result<impl ImageDecoder + use<'a>, ImageError> {
+    let format = format_of(bytes, file).ok_or(ImageError::UnknownFormat)?;
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.limits(decoder_limits(limits));
+    let decoder = reader.into_decoder().map_err(|error| decoding_error(&error, limits))?;
+    check_size(&decoder, limits)?;
+    Ok(decoder)
 }
 
 /// By content; TGA by its name.

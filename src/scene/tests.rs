@@ -2,6 +2,7 @@
 
 mod damage;
 mod framing;
+mod memory;
 mod models;
 mod store;
 

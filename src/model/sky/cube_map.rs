@@ -1,11 +1,12 @@
 //! Cube maps: six square pictures of everything around.
 
 use super::panorama::with_alpha;
-use super::texels::{Picture, Texels};
+use super::texels::{Picture, PictureSize, Texels, texel_bytes};
 use crate::math::colour::SRGB_DECODE;
 use crate::math::colour::srgb_from_linear;
 use crate::model::texture::mips::{half, halve};
 use std::fmt;
+use std::sync::Arc;
 
 /// Six faces with their mips, and a border of the neighbours' texels around each.
 ///
@@ -86,23 +87,37 @@ impl FaceFault {
 }
 
 impl CubeMap {
-    /// Adds mips and borders to six pictures in the order of [`AXES`].
+    /// Adds mips and borders to six pictures in the order of [`AXES`]. Faces may share a picture.
     ///
     /// `name` tells it from other cube maps of one scene: see [`CubeMap::name`].
     ///
     /// # Errors
     /// Every face that is not square or not as large as the first.
-    pub fn new(name: String, faces: [Picture; 6]) -> Result<Self, Vec<FaceFault>> {
-        check(&faces)?;
-        let mut side = faces[0].width as usize;
-        let mut plain = faces.map(|face| face.texels);
+    pub fn new(name: String, faces: [impl Into<Arc<Picture>>; 6]) -> Result<Self, Vec<FaceFault>> {
+        let mut plain: [Arc<Picture>; 6] = faces.map(Into::into);
+        let mut side = check(plain.each_ref().map(|face| [face.width, face.height]))? as usize;
         let mut levels = vec![CubeLevel::new(side, &plain)];
         while side > 1 {
-            plain = plain.map(|face| halved(side, &face));
+            plain = halved(&plain);
             side = half(side);
             levels.push(CubeLevel::new(side, &plain));
         }
         Ok(Self { name, levels })
+    }
+
+    /// Bytes of memory that one of faces of these sizes will hold.
+    ///
+    /// # Errors
+    /// As [`CubeMap::new`].
+    pub fn bytes_of(faces: [PictureSize; 6]) -> Result<u64, Vec<FaceFault>> {
+        let mut side = check(faces.map(|face| [face.width, face.height]))? as usize;
+        let of = |side: usize, is_linear| 6 * (side as u64 + 2).pow(2) * texel_bytes(is_linear);
+        let mut bytes = of(side, faces.iter().any(|face| face.is_linear));
+        while side > 1 {
+            side = half(side);
+            bytes += of(side, true);
+        }
+        Ok(bytes)
     }
 
     /// What its pictures are called: the same scene content and the same name make the same cube map.
@@ -118,22 +133,35 @@ impl CubeMap {
     }
 }
 
-fn check(faces: &[Picture; 6]) -> Result<(), Vec<FaceFault>> {
-    let first = faces[0].width;
-    let fault = |(face, &Picture { width, height, .. }): (usize, &Picture)| match () {
+/// The side of six faces of these widths and heights.
+fn check(faces: [[u32; 2]; 6]) -> Result<u32, Vec<FaceFault>> {
+    let first = faces[0][0];
+    let fault = |(face, [width, height]): (usize, [u32; 2])| match () {
         () if width != height => Some(FaceFault::NotSquare { face, width, height }),
         () if width != first => Some(FaceFault::Unequal { face, side: width, first }),
         () => None,
     };
-    let faults: Vec<_> = faces.iter().enumerate().filter_map(fault).collect();
-    if faults.is_empty() { Ok(()) } else { Err(faults) }
+    let faults: Vec<_> = faces.into_iter().enumerate().filter_map(fault).collect();
+    if faults.is_empty() { Ok(first) } else { Err(faults) }
 }
 
-/// The next level of a face, without a border.
-fn halved(side: usize, face: &Texels) -> Texels {
-    let decode = &*SRGB_DECODE;
-    let below = halve(side, side, |x, y| with_alpha(face.linear(y * side + x, decode))).texels;
-    Texels::Linear(below.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+/// The next level of the faces, without borders. Those that share a picture share the next one too.
+fn halved(faces: &[Arc<Picture>; 6]) -> [Arc<Picture>; 6] {
+    let first = |face: usize| faces.iter().position(|earlier| Arc::ptr_eq(earlier, &faces[face]));
+    let mut below: Vec<Arc<Picture>> = Vec::with_capacity(faces.len());
+    for (face, picture) in faces.iter().enumerate() {
+        let made = first(face).and_then(|earlier| below.get(earlier).cloned());
+        below.push(made.unwrap_or_else(|| Arc::new(halved_face(picture))));
+    }
+    below.try_into().expect("invariant: as many as there were")
+}
+
+fn halved_face(face: &Picture) -> Picture {
+    let (side, decode) = (face.width as usize, &*SRGB_DECODE);
+    let below = halve(side, side, |x, y| with_alpha(face.texels.linear(y * side + x, decode))).texels;
+    let texels = Texels::Linear(below.into_iter().map(|[r, g, b, _]| [r, g, b]).collect());
+    let side = (face.width / 2).max(1);
+    Picture { width: side, height: side, texels }
 }
 
 impl CubeLevel {
@@ -142,10 +170,10 @@ impl CubeLevel {
     /// The border holds the texels across the edge, so that filtering knows no seam. Where three faces
     /// meet there is none: the corner holds the mean of the three texels that meet there, as OpenGL's
     /// seamless filtering has it (4.6 specification, 8.14.3).
-    fn new(side: usize, faces: &[Texels; 6]) -> Self {
+    fn new(side: usize, faces: &[Arc<Picture>; 6]) -> Self {
         let srgb: Option<Vec<&Vec<[u8; 4]>>> = faces
             .iter()
-            .map(|face| match face {
+            .map(|face| match &face.texels {
                 Texels::Srgb8(codes) => Some(codes),
                 Texels::Linear(_) => None,
             })
@@ -154,7 +182,7 @@ impl CubeLevel {
             Some(faces) => Texels::Srgb8(bordered(side, |face, at| faces[face][at], mean_of_codes)),
             None => {
                 let decode = &*SRGB_DECODE;
-                let texel = |face: usize, at: usize| faces[face].linear(at, decode);
+                let texel = |face: usize, at: usize| faces[face].texels.linear(at, decode);
                 Texels::Linear(bordered(side, texel, mean_of_values))
             }
         };
@@ -321,6 +349,36 @@ mod tests {
         for level in &cube.levels {
             let count = 6 * (level.side + 2) * (level.side + 2);
             assert!((0..count).all(|i| level.texels.linear(i, &SRGB_DECODE) == [1.0; 3]));
+        }
+    }
+
+    #[test]
+    fn faces_that_share_a_picture_are_those_that_have_it_each() {
+        let [a, b] = [3.0, 9.0].map(|s| face(5, |x, y| [x as f32, y as f32, s]));
+        let each = [&a, &a, &b, &a, &b, &a].map(Picture::clone);
+        let [a, b] = [a, b].map(Arc::new);
+        let shared = [&a, &a, &b, &a, &b, &a].map(Arc::clone);
+        let cube = CubeMap::new(String::new(), shared).unwrap();
+        assert!(cube == CubeMap::new(String::new(), each).unwrap());
+    }
+
+    #[test]
+    fn its_bytes_are_known_before_it_is_there() {
+        for side in [1, 2, 5, 16] {
+            for of_codes in [0, 5, 6] {
+                let codes = Texels::Srgb8(vec![[1; 4]; (side * side) as usize]);
+                let faces = std::array::from_fn(|i| match i < of_codes {
+                    true => Picture { width: side, height: side, texels: codes.clone() },
+                    false => face(side, |_, _| [0.5; 3]),
+                });
+                let sizes = std::array::from_fn(|i| PictureSize {
+                    width: side,
+                    height: side,
+                    is_linear: i >= of_codes,
+                });
+                let known = CubeMap::bytes_of(sizes).unwrap();
+                assert_eq!(CubeMap::new(String::new(), faces).unwrap().bytes(), known);
+            }
         }
     }
 

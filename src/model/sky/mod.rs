@@ -9,4 +9,4 @@ pub mod texels;
 pub use cube_map::{CubeMap, FaceFault};
 pub use daylight::Daylight;
 pub use panorama::Panorama;
-pub use texels::{Picture, Texels};
+pub use texels::{Picture, PictureSize, Texels};

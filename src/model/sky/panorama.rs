@@ -1,6 +1,6 @@
 //! Equirectangular pictures of everything around.
 
-use super::texels::{Picture, Texels};
+use super::texels::{Picture, PictureSize, Texels, texel_bytes};
 use crate::math::colour::SRGB_DECODE;
 use crate::model::texture::mips::{half, halve};
 use std::fmt;
@@ -41,6 +41,18 @@ impl Panorama {
             levels.push(level);
         }
         Self { name, levels }
+    }
+
+    /// Bytes of memory that one of a picture of this size will hold.
+    #[must_use]
+    pub fn bytes_of(size: PictureSize) -> u64 {
+        let mut sides = [size.width as usize, size.height as usize];
+        let mut bytes = size.bytes();
+        while sides != [1, 1] {
+            sides = sides.map(half);
+            bytes += sides[0] as u64 * sides[1] as u64 * texel_bytes(true);
+        }
+        bytes
     }
 
     /// What its picture is called: the same scene content and the same name make the same panorama.
@@ -94,6 +106,21 @@ mod tests {
         assert_eq!(panorama.levels.len(), 2);
         assert_eq!(panorama.levels[1].texels, Texels::Linear(vec![[2.0, 1.0, 32752.0]]));
         assert_eq!(panorama.bytes(), 36);
+    }
+
+    #[test]
+    fn its_bytes_are_known_before_it_is_there() {
+        for (width, height) in [(1, 1), (2, 1), (7, 3), (16, 8)] {
+            for is_linear in [false, true] {
+                let count = (width * height) as usize;
+                let texels = match is_linear {
+                    true => Texels::Linear(vec![[0.5; 3]; count]),
+                    false => Texels::Srgb8(vec![[1; 4]; count]),
+                };
+                let known = Panorama::bytes_of(PictureSize { width, height, is_linear });
+                assert_eq!(Panorama::new(String::new(), Picture { width, height, texels }).bytes(), known);
+            }
+        }
     }
 
     #[test]

@@ -14,6 +14,30 @@ pub struct Picture {
     pub texels: Texels,
 }
 
+/// What is known of a picture before it is decoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureSize {
+    /// Texels in a row, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+    /// Whether its texels are [`Texels::Linear`].
+    pub is_linear: bool,
+}
+
+impl PictureSize {
+    /// Bytes of its texels.
+    #[must_use]
+    pub fn bytes(self) -> u64 {
+        u64::from(self.width) * u64::from(self.height) * texel_bytes(self.is_linear)
+    }
+}
+
+/// Bytes of a texel of [`Texels::Linear`], else of [`Texels::Srgb8`].
+pub(super) fn texel_bytes(is_linear: bool) -> u64 {
+    if is_linear { 12 } else { 4 }
+}
+
 /// Texels as they are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Texels {

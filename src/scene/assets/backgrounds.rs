@@ -2,9 +2,8 @@
 
 use super::Loader;
 use super::build;
-use super::cache::SkyAsset;
-use crate::limits::Limits;
-use crate::model::sky::{CubeMap, Daylight, FaceFault, Panorama, Picture};
+use super::cache::{SkyAsset, same_bytes};
+use crate::model::sky::{CubeMap, Daylight, FaceFault, Panorama, Picture, PictureSize};
 use crate::scene::compile::SceneError;
 use crate::scene::document::{BackgroundPart, FACES};
 use crate::scene::{Background, Fault};
@@ -40,7 +39,7 @@ impl Loader<'_> {
             BackgroundPart::Transparent => Some(Background::Transparent),
             BackgroundPart::Sky { turbidity, .. } => {
                 let key = format!("sky {towards_sun:?} {turbidity:?}");
-                let make = |_, _: &[File], _: &Limits| {
+                let make = |_, _: &[File], _: &Self| {
                     Ok(Background::Sky(Arc::new(Daylight::new(towards_sun, *turbidity))))
                 };
                 Some(self.sky(key, Vec::new(), make)?)
@@ -53,7 +52,7 @@ impl Loader<'_> {
                 Some(files) => {
                     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
                     let key = format!("cubemap {names:?}");
-                    let make = |key, files: &[File], limits: &Limits| cube_map(key, files, limits, place);
+                    let make = |key, files: &[File], loader: &Self| cube_map(key, files, loader, place);
                     Some(self.sky(key, files, make)?)
                 }
                 None => None,
@@ -72,12 +71,13 @@ impl Loader<'_> {
     }
 
     /// What `make` makes of `files`, or the same as it was made before. A key stands for all that it is
-    /// made of but the bytes of its files.
+    /// made of but the bytes of its files. What may be large is refused by `make` itself, by
+    /// [`Loader::check_room`], before it is there.
     fn sky(
         &mut self,
         key: String,
         files: Vec<File>,
-        make: impl FnOnce(String, &[File], &Limits) -> Result<Background, SceneError>,
+        make: impl FnOnce(String, &[File], &Self) -> Result<Background, SceneError>,
     ) -> Result<Background, SceneError> {
         if let Some(asset) = self.assets.skies.get(&key) {
             return Ok(asset.background.clone());
@@ -85,7 +85,7 @@ impl Loader<'_> {
         let before = self.previous.and_then(|previous| previous.skies.get(&key));
         let background = match before.filter(|asset| asset.is_of(&files)) {
             Some(asset) => asset.background.clone(),
-            None => make(key.clone(), &files, self.limits)?,
+            None => make(key.clone(), &files, self)?,
         };
         let asset = SkyAsset { files, background: background.clone() };
         self.count_bytes(asset.bytes())?;
@@ -94,18 +94,20 @@ impl Loader<'_> {
     }
 }
 
-fn panorama(key: String, files: &[File], limits: &Limits) -> Result<Background, SceneError> {
-    let [picture] = pictures(files, limits)?;
+fn panorama(key: String, files: &[File], loader: &Loader) -> Result<Background, SceneError> {
+    let (name, bytes) = files.first().expect("invariant: a panorama has a picture");
+    let size = build::picture_size(name, bytes, loader.limits)?;
+    loader.check_room(Panorama::bytes_of(size))?;
+    let picture = build::picture(name, bytes, loader.limits)?;
     Ok(Background::Panorama(Arc::new(Panorama::new(key, picture))))
 }
 
 fn cube_map(
     key: String,
     files: &[File],
-    limits: &Limits,
+    loader: &Loader,
     place: &BackgroundPlace,
 ) -> Result<Background, SceneError> {
-    let faces = pictures(files, limits)?;
     let faults = |faults: Vec<FaceFault>| {
         let fault = |fault: FaceFault| Fault {
             pointer: format!("{}/faces/{}", place.pointer, FACES[fault.face()]),
@@ -113,18 +115,32 @@ fn cube_map(
         };
         SceneError::Document(faults.into_iter().map(fault).collect())
     };
+    // Six faces of one small file may be gigabytes: what they will take is known from the headers.
+    let sizes: [PictureSize; 6] =
+        each_once(files, |name, bytes| build::picture_size(name, bytes, loader.limits))?;
+    loader.check_room(CubeMap::bytes_of(sizes).map_err(faults)?)?;
+    let faces: [Arc<Picture>; 6] =
+        each_once(files, |name, bytes| build::picture(name, bytes, loader.limits).map(Arc::new))?;
     CubeMap::new(key, faces).map(|map| Background::CubeMap(Arc::new(map))).map_err(faults)
 }
 
-/// Decodes `N` files; each only once, however often it is named.
-fn pictures<const N: usize>(files: &[File], limits: &Limits) -> Result<[Picture; N], SceneError> {
-    let mut pictures: Vec<Picture> = Vec::with_capacity(N);
+/// What `make` makes of `N` files; of equal ones only once.
+fn each_once<T: Clone, const N: usize>(
+    files: &[File],
+    make: impl Fn(&str, &Bytes) -> Result<T, SceneError>,
+) -> Result<[T; N], SceneError> {
+    let mut made: Vec<T> = Vec::with_capacity(N);
     for (at, (name, bytes)) in files.iter().enumerate() {
-        let same = files[..at].iter().position(|(earlier, _)| earlier == name);
-        pictures.push(match same {
-            Some(earlier) => pictures[earlier].clone(),
-            None => build::picture(name, bytes, limits)?,
+        // A name's ending counts too: by it alone is a TGA known.
+        let is_like = |(other, content): &File| ending(other) == ending(name) && same_bytes(content, bytes);
+        made.push(match files[..at].iter().position(is_like) {
+            Some(earlier) => made[earlier].clone(),
+            None => make(name, bytes)?,
         });
     }
-    Ok(pictures.try_into().expect("invariant: the caller names as many files"))
+    Ok(made.try_into().ok().expect("invariant: the caller names as many files"))
+}
+
+fn ending(name: &str) -> Option<&str> {
+    name.rsplit_once('.').map(|(_, ending)| ending)
 }

@@ -7,7 +7,7 @@ use crate::import::{self, ImportError, MapRef, MtlMaterial, Note, ObjOptions};
 use crate::limits::{Limits, MAX_TRIANGLES};
 use crate::math::colour::linear_from_srgb;
 use crate::model::build::NONE;
-use crate::model::sky::Picture;
+use crate::model::sky::{Picture, PictureSize};
 use crate::model::texture::{ColorSpace, Image};
 use crate::model::{Corner, Material, Mesh, MeshSource, Part, Texture, normals, shapes};
 use crate::scene::compile::SceneError;
@@ -119,6 +119,11 @@ fn narrowed(color: &[f64; 3]) -> Vec3 {
 /// Decodes an image file.
 pub(super) fn image(name: &str, bytes: &Bytes, limits: &Limits) -> Result<Image, SceneError> {
     import::image::decode(bytes, name, limits).map_err(|error| refused(error.in_file(name)))
+}
+
+/// The size of an image or a picture of a background, from its header.
+pub(super) fn picture_size(name: &str, bytes: &Bytes, limits: &Limits) -> Result<PictureSize, SceneError> {
+    import::image::picture_size(bytes, name, limits).map_err(|error| refused(error.in_file(name)))
 }
 
 /// Decodes a picture of a background.

@@ -169,7 +169,7 @@ impl Sampling {
 }
 
 /// Equal content; the same allocation, which is the common case, is told without reading it.
-fn same_bytes(a: &Bytes, b: &Bytes) -> bool {
+pub(super) fn same_bytes(a: &Bytes, b: &Bytes) -> bool {
     (a.as_ptr() == b.as_ptr() && a.len() == b.len()) || a == b
 }
 

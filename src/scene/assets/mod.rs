@@ -140,8 +140,14 @@ impl<'a> Loader<'a> {
     }
 
     fn count_bytes(&mut self, bytes: u64) -> Result<(), SceneError> {
-        self.bytes = self.bytes.saturating_add(bytes);
-        let (limit, value) = (self.limits.scene_bytes, self.bytes);
+        self.check_room(bytes)?;
+        self.bytes += bytes;
+        Ok(())
+    }
+
+    /// Refuses what `bytes` more would be too many for, before it is there.
+    fn check_room(&self, bytes: u64) -> Result<(), SceneError> {
+        let (limit, value) = (self.limits.scene_bytes, self.bytes.saturating_add(bytes));
         if value <= limit {
             return Ok(());
         }

@@ -68,7 +68,10 @@ impl Loader<'_> {
 
     fn new_image(&mut self, source: &ImageSource) -> Result<Image, SceneError> {
         match source {
-            ImageSource::File { name, bytes, channel: None } => build::image(name, bytes, self.limits),
+            ImageSource::File { name, bytes, channel: None } => {
+                self.check_room(build::picture_size(name, bytes, self.limits)?.bytes())?;
+                build::image(name, bytes, self.limits)
+            }
             ImageSource::File { name, bytes, channel: Some(channel) } => {
                 let whole = ImageSource::File { name: name.clone(), bytes: bytes.clone(), channel: None };
                 Ok(self.image(whole)?.channel_as_grey(*channel))
