@@ -42,6 +42,9 @@ pub const MAX_MAP_NAME_BYTES: usize = 1024;
 /// in the file. Fixed.
 pub const MAX_MATERIAL_LIBRARIES: usize = 1024;
 
+/// Instances of one scene: a picture of instances has 16 bits a pixel, of which 0 is the background. Fixed.
+pub const MAX_INSTANCES: usize = u16::MAX as usize;
+
 /// Notes that one file may give; the rest is counted. Fixed.
 pub const MAX_NOTES: usize = 64;
 
@@ -92,6 +95,8 @@ pub struct Limits {
     /// Entries of `environment.backgrounds`: a procedural sky of a few words is some milliseconds' work.
     /// Fixed.
     pub backgrounds: usize,
+    /// Entries of `instances`, [`MAX_INSTANCES`].
+    pub instances: usize,
     /// Entries of any other map of the document. Fixed.
     pub entries: usize,
     /// Characters of a name, [`MAX_NAME_CHARS`].
@@ -132,6 +137,7 @@ impl Default for Limits {
             shadow_texels: 1 << 28,
             lights: 1024,
             backgrounds: 256,
+            instances: MAX_INSTANCES,
             entries: 65_536,
             name_chars: MAX_NAME_CHARS,
             shape_segments: MAX_SHAPE_SEGMENTS,

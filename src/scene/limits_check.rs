@@ -30,7 +30,7 @@ fn entries(document: &Document, limits: &Limits) -> Result<(), SceneError> {
         ("textures", document.textures.len(), limits.entries),
         ("materials", document.materials.len(), limits.entries),
         ("meshes", document.meshes.len(), limits.entries),
-        ("instances", document.instances.len(), limits.entries),
+        ("instances", document.instances.len(), limits.instances),
         ("post", document.post.len(), limits.post_effects),
     ];
     parts.into_iter().try_for_each(|(part, count, limit)| {

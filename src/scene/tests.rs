@@ -229,6 +229,19 @@ fn too_many_lights_are_refused() {
 }
 
 #[test]
+fn there_are_as_many_instances_as_codes_for_them() {
+    let of = |count: usize| {
+        let names = (0..count).map(|i| (i.to_string(), json!({ "mesh": "m" })));
+        let instances: serde_json::Map<_, _> = names.collect();
+        compiled(&json!({ "meshes": { "m": { "type": "box" } }, "instances": instances }))
+    };
+    // 0 is the background.
+    let codes = of(65_535).unwrap().scene.instances.len();
+    assert_eq!(codes, usize::from(u16::MAX));
+    assert!(matches!(of(65_536), Err(SceneError::TooLarge { limit: 65_535, value: 65_536, .. })));
+}
+
+#[test]
 fn instances_out_of_reach_are_faults() {
     let error = compiled(&cornered(json!({ "mesh": "m", "scale": 1e30, "translation": [1e37, 0, 0] })));
     assert!(error.is_ok());

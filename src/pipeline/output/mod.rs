@@ -83,5 +83,8 @@ fn unorm16(share: f64) -> u16 {
 
 /// 0 for the background, else 1 + the instance's place among all names in order.
 fn instance_code(seen: Option<&Triangle>, draws: &[Draw]) -> u16 {
-    seen.map_or(0, |seen| u16::try_from(draws[seen.draw as usize].instance + 1).unwrap_or(u16::MAX))
+    seen.map_or(0, |seen| {
+        let place = draws[seen.draw as usize].instance;
+        u16::try_from(place + 1).expect("invariant: a scene has at most MAX_INSTANCES")
+    })
 }
