@@ -7,6 +7,7 @@ mod textures;
 
 pub(super) use backgrounds::BackgroundPlace;
 pub use cache::Assets;
+pub(super) use textures::NamedTextures;
 
 use super::compile::SceneError;
 use super::document::{MeshPart, missing_file};

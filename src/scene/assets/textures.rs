@@ -12,24 +12,41 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
+/// Textures by name: one for each colour space that it is read in.
+#[derive(Debug, Default)]
+pub(in crate::scene) struct NamedTextures(BTreeMap<String, Vec<Arc<Texture>>>);
+
+impl NamedTextures {
+    /// The texture `name` in `space`, or in the only one that its document gives it.
+    pub(in crate::scene) fn get(&self, name: &str, space: ColorSpace) -> Option<&Arc<Texture>> {
+        let all = self.0.get(name)?;
+        all.iter().find(|texture| texture.color_space == space).or(all.first())
+    }
+}
+
 impl Loader<'_> {
-    /// The document's textures by name. One whose file is missing is left out, with a warning.
-    pub(in crate::scene) fn textures(
-        &mut self,
-        document: &Document,
-    ) -> Result<BTreeMap<String, Arc<Texture>>, SceneError> {
-        let mut textures = BTreeMap::new();
+    /// The document's textures, each in every colour space that it is read in. One whose file is missing
+    /// is left out, with a warning.
+    pub(in crate::scene) fn textures(&mut self, document: &Document) -> Result<NamedTextures, SceneError> {
+        let mut textures = NamedTextures::default();
         let spaces = document.color_spaces();
         for (name, part) in &document.textures {
-            let space = spaces.get(name.as_str()).copied().unwrap_or(ColorSpace::Srgb);
-            let source = match &part.source {
-                TextureSource::File(file) => self
-                    .find_picture(file, &format!("the texture {name:?}"))
-                    .map(|(name, bytes)| ImageSource::File { name, bytes, channel: None }),
-                made @ TextureSource::Checker { .. } => Some(ImageSource::Made(made.clone(), space)),
+            let file = match &part.source {
+                TextureSource::File(file) => {
+                    let Some(found) = self.find_picture(file, &format!("the texture {name:?}")) else {
+                        continue;
+                    };
+                    Some(found)
+                }
+                TextureSource::Checker { .. } => None,
             };
-            if let Some(source) = source {
-                textures.insert(name.clone(), self.texture(source, sampling(part, space))?);
+            for &space in &spaces[name.as_str()] {
+                let source = match file.clone() {
+                    Some((name, bytes)) => ImageSource::File { name, bytes, channel: None },
+                    None => ImageSource::Made(part.source.clone(), space),
+                };
+                let texture = self.texture(source, sampling(part, space))?;
+                textures.0.entry(name.clone()).or_default().push(texture);
             }
         }
         Ok(textures)

@@ -1,8 +1,8 @@
 //! Materials: those of the document, those of the meshes' MTL files, and the default one.
 
 use super::SceneError;
-use crate::model::{Material, Mesh, Texture};
-use crate::scene::assets::{Loader, NamedMesh};
+use crate::model::{Material, Mesh};
+use crate::scene::assets::{Loader, NamedMesh, NamedTextures};
 use crate::scene::document::{MapUse, MaterialPart};
 use crate::scene::{Document, Warning};
 use std::collections::{BTreeMap, BTreeSet};
@@ -133,8 +133,8 @@ fn has_maps(material: &Material) -> bool {
     maps.into_iter().any(Option::is_some)
 }
 
-fn material(part: &MaterialPart, textures: &BTreeMap<String, Arc<Texture>>) -> Material {
-    let map = |map_use: MapUse| part.map(map_use).and_then(|name| textures.get(name)).cloned();
+fn material(part: &MaterialPart, textures: &NamedTextures) -> Material {
+    let map = |map_use: MapUse| textures.get(part.map(map_use)?, map_use.color_space()).cloned();
     Material {
         shading: part.shading,
         diffuse: part.diffuse.to_linear(),

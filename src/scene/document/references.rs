@@ -6,7 +6,7 @@ use super::{Document, MeshPart};
 use crate::model::texture::ColorSpace;
 use crate::scene::Files;
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Reports every reference to an entry that is not there.
 ///
@@ -56,25 +56,28 @@ pub(in crate::scene) fn missing_file(files: &Files, path: &str) -> String {
 }
 
 impl Document {
-    /// The colour space of every texture: as given; else linear where it is used only as normal,
-    /// bump or opacity map, sRGB otherwise.
+    /// The colour spaces that every texture is read in: the one given; else that of each use, see
+    /// [`MapUse::color_space`], and sRGB where there is none.
     #[must_use]
-    pub fn color_spaces(&self) -> BTreeMap<&str, ColorSpace> {
-        let mut used_as_data = BTreeSet::new();
-        let mut used_as_color = BTreeSet::new();
+    pub fn color_spaces(&self) -> BTreeMap<&str, Vec<ColorSpace>> {
+        let mut spaces: BTreeMap<&str, Vec<ColorSpace>> = BTreeMap::new();
         for material in self.materials.values() {
             for map_use in MapUse::ALL {
-                let used = if map_use.is_data() { &mut used_as_data } else { &mut used_as_color };
-                used.extend(material.map(map_use));
+                let Some((name, part)) =
+                    material.map(map_use).and_then(|name| self.textures.get_key_value(name))
+                else {
+                    continue;
+                };
+                let space = part.color_space.unwrap_or(map_use.color_space());
+                let known = spaces.entry(name).or_default();
+                if !known.contains(&space) {
+                    known.push(space);
+                }
             }
         }
-        let by_use = |name| {
-            let is_data = used_as_data.contains(name) && !used_as_color.contains(name);
-            if is_data { ColorSpace::Linear } else { ColorSpace::Srgb }
-        };
-        let textures = self.textures.iter();
-        textures
-            .map(|(name, part)| (name.as_str(), part.color_space.unwrap_or_else(|| by_use(name))))
-            .collect()
+        for (name, part) in &self.textures {
+            spaces.entry(name).or_insert_with(|| vec![part.color_space.unwrap_or(ColorSpace::Srgb)]);
+        }
+        spaces
     }
 }

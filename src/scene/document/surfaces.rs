@@ -168,10 +168,13 @@ impl MapUse {
         }
     }
 
-    /// Whether its texels are numbers rather than colours.
+    /// How its texels are read where the texture does not say: colours as sRGB, numbers as they are.
     #[must_use]
-    pub fn is_data(self) -> bool {
-        matches!(self, Self::Normal | Self::Bump | Self::Opacity)
+    pub fn color_space(self) -> ColorSpace {
+        match self {
+            Self::Diffuse | Self::Specular | Self::Emissive => ColorSpace::Srgb,
+            Self::Normal | Self::Bump | Self::Opacity => ColorSpace::Linear,
+        }
     }
 }
 

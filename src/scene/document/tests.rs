@@ -296,12 +296,18 @@ fn faults_are_bounded() {
 }
 
 #[test]
-fn data_maps_are_linear_unless_said_otherwise() {
+fn each_use_of_a_texture_has_its_colour_space_unless_said_otherwise() {
     let json = json!({
-        "textures": { "n": {"checker": {}}, "both": {"checker": {}}, "said": {"checker": {}, "color_space": "srgb"} },
-        "materials": { "m": {"normal_map": "n", "bump_map": "both", "diffuse_map": "both", "opacity_map": "said"} }
+        "textures": {
+            "n": {"checker": {}}, "both": {"checker": {}}, "said": {"checker": {}, "color_space": "srgb"}, "idle": {"checker": {}},
+        },
+        "materials": { "m": {
+            "normal_map": "n", "bump_map": "both", "diffuse_map": "both", "opacity_map": "said", "specular_map": "said",
+        } }
     });
     let document = Document::from_json(&json).unwrap();
-    let spaces = ["n", "both", "said"].map(|name| words::Word::word(document.color_spaces()[name]));
-    assert_eq!(spaces, ["linear", "srgb", "srgb"]);
+    use crate::model::texture::ColorSpace::{Linear, Srgb};
+    let expected =
+        [("both", vec![Srgb, Linear]), ("idle", vec![Srgb]), ("n", vec![Linear]), ("said", vec![Srgb])];
+    assert!(document.color_spaces().into_iter().eq(expected));
 }

@@ -2,6 +2,7 @@
 
 use crate::limits::Limits;
 use crate::model::Wrap;
+use crate::model::texture::ColorSpace;
 use crate::scene::{Compiled, Document, Files, SceneError, Warning, compile};
 use bytes::Bytes;
 use glam::Vec3;
@@ -37,6 +38,24 @@ fn build(json: &Value, files: &Files) -> Result<Compiled, SceneError> {
 
 fn one_model() -> Value {
     json!({ "meshes": { "m": { "type": "obj", "file": "a.obj" } }, "instances": { "i": { "mesh": "m" } } })
+}
+
+#[test]
+fn colour_and_alpha_may_come_from_one_file() {
+    let of = |texture: Value| {
+        let json = json!({
+            "textures": { "t": texture },
+            "materials": { "m": { "diffuse_map": "t", "opacity_map": "t" } },
+        });
+        let scene = build(&json, &files(&[("a.png", png([188, 64, 0, 255]))])).unwrap().scene;
+        let material = scene.materials[1].clone();
+        [material.diffuse_map.clone().unwrap(), material.opacity_map.clone().unwrap()]
+    };
+    let [color, alpha] = of(json!({ "file": "a.png" }));
+    assert_eq!((color.color_space, alpha.color_space), (ColorSpace::Srgb, ColorSpace::Linear));
+    assert!(Arc::ptr_eq(&color.image, &alpha.image));
+    let [color, alpha] = of(json!({ "file": "a.png", "color_space": "srgb" }));
+    assert!(Arc::ptr_eq(&color, &alpha) && alpha.color_space == ColorSpace::Srgb);
 }
 
 fn warned(warnings: &[Warning], file: &str, line: u64, word: &str) -> bool {
