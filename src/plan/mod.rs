@@ -175,6 +175,7 @@ impl Plan {
     /// Adds the lights that shine, with the shadow maps that they need.
     fn add_lights(&mut self, limits: &Limits) -> Result<(), PlanError> {
         let scene = self.scene.clone();
+        let mut participants = None;
         let receives = self.draws.iter().any(|draw| draw.surface.receives_shadow && draw.surface.lit);
         for light in scene.lights.iter().filter(|light| light.enabled && light.radiance != Vec3::ZERO) {
             let rays = match light.kind {
@@ -182,7 +183,11 @@ impl Plan {
                 LightKind::Point { position, .. } => shadow::Rays::FromPoint(position),
             };
             let shadow = light.shadow.filter(|_| receives && scene.render.shadows);
-            let pass = shadow.and_then(|shadow| shadow::plan(&scene, self.t, rays, &shadow));
+            let pass = shadow.and_then(|shadow| {
+                let participants =
+                    participants.get_or_insert_with(|| shadow::Participants::of(&scene, self.t));
+                shadow::plan(participants, rays, &shadow)
+            });
             let shadow = match pass {
                 Some(pass) => {
                     self.charge(pass.frame_bytes(), limits)?;

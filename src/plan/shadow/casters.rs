@@ -5,11 +5,11 @@ use crate::math::Bounds;
 use crate::model::Mesh;
 use crate::model::normals::face_normal;
 use crate::plan::{AlphaTest, Item, Slot, number, opacity};
-use crate::scene::{Cull, Instance, Scene, ShadowCull};
+use crate::scene::{Cull, Instance, Scene};
 use glam::DVec3;
 
-/// Every visible instance as a light sees it.
-pub(super) struct Participants(Vec<Participant>);
+/// Every visible instance as lights see it, all of them alike.
+pub(in crate::plan) struct Participants(Vec<Participant>);
 
 struct Participant {
     caster: Caster,
@@ -17,22 +17,26 @@ struct Participant {
     casts: bool,
     /// Whether shadows fall on it.
     receives: bool,
+    /// Whether one part of it throws a shadow on another.
+    shades_itself: bool,
+    /// Around all others on which shadows fall.
+    others: Option<Bounds>,
 }
 
 /// What is drawn into a map.
 pub(super) struct Caster {
-    /// Its slots say which faces cast, and what of them; their draws count in `tests`.
+    /// Its slots say what of it casts, from all of its faces; their draws count in `tests`.
     pub(super) item: Item,
     /// What decides on the slots that are cut out.
     pub(super) tests: Vec<AlphaTest>,
 }
 
 impl Caster {
-    fn new(scene: &Scene, instance: &Instance, t: f64, cull: Cull) -> Self {
+    fn new(scene: &Scene, instance: &Instance, t: f64) -> Self {
         let mut tests = Vec::new();
         let slots = instance.materials.iter().map(|&material| {
             let transparency = opacity::of_solid(&scene.materials[material as usize])?;
-            let slot = Slot { draw: number(tests.len()), cull, opacity: transparency.opacity() };
+            let slot = Slot { draw: number(tests.len()), cull: Cull::None, opacity: transparency.opacity() };
             tests.extend(transparency.into_test());
             Some(slot)
         });
@@ -43,18 +47,43 @@ impl Caster {
 
 impl Participants {
     /// Places every visible instance as it is at time `t` (seconds).
-    pub(super) fn of(scene: &Scene, t: f64, cull: ShadowCull) -> Self {
-        let cull = match cull {
-            ShadowCull::None => Cull::None,
-            ShadowCull::Front => Cull::Front,
-            ShadowCull::Back => Cull::Back,
-        };
+    pub(in crate::plan) fn of(scene: &Scene, t: f64) -> Self {
+        let mut is_hollow = vec![None; scene.meshes.len()];
         let participant = |instance: &Instance| {
-            let caster = Caster::new(scene, instance, t, cull);
+            let caster = Caster::new(scene, instance, t);
             let casts = instance.casts_shadow && caster.item.slots.iter().any(Option::is_some);
-            Participant { caster, casts, receives: instance.receives_shadow }
+            let receives = instance.receives_shadow;
+            let mut shades_itself = || {
+                let known: &mut Option<bool> = &mut is_hollow[instance.mesh as usize];
+                *known.get_or_insert_with(|| can_shade_itself(&caster.item.mesh))
+            };
+            let shades_itself = casts && receives && shades_itself();
+            Participant { caster, casts, receives, shades_itself, others: None }
         };
-        Self(scene.visible().map(|(_, instance)| participant(instance)).collect())
+        let mut all = Self(scene.visible().map(|(_, instance)| instance).map(participant).collect());
+        all.find_others();
+        all
+    }
+
+    /// Fills in `others`.
+    fn find_others(&mut self) {
+        let join = |a: Option<Bounds>, b: Option<Bounds>| match (a, b) {
+            (Some(a), Some(b)) => Some(a.union(b)),
+            (a, b) => a.or(b),
+        };
+        let own = |p: &Participant| p.caster.item.bounds().filter(|_| p.receives);
+        let boxes: Vec<Option<Bounds>> = self.0.iter().map(own).collect();
+        // Around all receivers behind each participant in the list; those before it are added on the way.
+        let mut after = None;
+        for (p, own) in self.0.iter_mut().zip(&boxes).rev() {
+            p.others = after;
+            after = join(*own, after);
+        }
+        let mut before = None;
+        for (p, own) in self.0.iter_mut().zip(&boxes) {
+            p.others = join(before, p.others);
+            before = join(before, *own);
+        }
     }
 
     /// Those on which shadows fall.
@@ -64,29 +93,11 @@ impl Participants {
 
     /// Those that throw a shadow on anything.
     pub(super) fn casters(&self, rays: Rays) -> Vec<&Caster> {
-        let all = &self.0;
-        let boxes: Vec<Option<Bounds>> =
-            all.iter().map(|p| p.caster.item.bounds().filter(|_| p.receives)).collect();
-        let join = |a: Option<Bounds>, b: Option<Bounds>| match (a, b) {
-            (Some(a), Some(b)) => Some(a.union(b)),
-            (a, b) => a.or(b),
+        let shades = |p: &&Participant| {
+            let shades_others = || p.others.is_some_and(|others| can_shade(&p.caster.item, others, rays));
+            p.shades_itself || shades_others()
         };
-        // Around all receivers behind each participant in the list; those before it are added on the way.
-        let mut after = vec![None; all.len() + 1];
-        for i in (0..all.len()).rev() {
-            after[i] = join(after[i + 1], boxes[i]);
-        }
-        let mut before = None;
-        let mut found = Vec::new();
-        for (i, p) in all.iter().enumerate() {
-            let others = join(before, after[i + 1]);
-            let shades = others.is_some_and(|others| can_shade(&p.caster.item, others, rays));
-            if p.casts && (shades || (p.receives && can_shade_itself(&p.caster.item.mesh))) {
-                found.push(&p.caster);
-            }
-            before = join(before, boxes[i]);
-        }
-        found
+        self.0.iter().filter(|p| p.casts).filter(shades).map(|p| &p.caster).collect()
     }
 }
 

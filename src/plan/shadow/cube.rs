@@ -4,6 +4,7 @@ use super::casters::Caster;
 use super::{Face, Filter};
 use crate::math::{Bounds, Projection, View};
 use crate::plan::{Item, view};
+use crate::scene::Shadow;
 use glam::DVec3;
 
 /// Texels around each face beyond its 90°: a tap on the border of two faces finds its texel on either.
@@ -28,18 +29,18 @@ pub(super) fn faces(
     position: DVec3,
     casters: &[&Caster],
     receivers: &[&Item],
-    resolution: u32,
+    shadow: &Shadow,
     filter: &Filter,
 ) -> Vec<Face> {
     let receive: Vec<Bounds> = receivers.iter().filter_map(|item| item.bounds()).collect();
     let Some(near) = near(position, casters) else { return Vec::new() };
-    let reach = kernel_tangent(filter, focal_length(resolution), near);
+    let reach = kernel_tangent(filter, focal_length(shadow.resolution), near);
     (0..6)
         .filter_map(|side| {
-            let view = look_along(side, position, near, resolution);
+            let view = look_along(side, position, near, shadow.resolution);
             let seen =
                 |caster: &&Caster| caster.item.bounds().is_some_and(|bounds| view::reaches(&view, bounds));
-            let face = Face::new(side, view, casters.iter().copied().filter(seen));
+            let face = Face::new(side, view, shadow.cull, casters.iter().copied().filter(seen));
             let kernels = widened(&face.view, reach);
             let asked = receive.iter().any(|&bounds| view::reaches(&kernels, bounds));
             (asked && !face.items.is_empty()).then_some(face)

@@ -4,12 +4,13 @@ mod casters;
 mod cube;
 mod directional;
 
+pub(super) use casters::Participants;
 pub use cube::WIDEST_TANGENT;
 
-use super::{AlphaTest, Item, ItemTest, number};
+use super::{AlphaTest, Item, ItemTest, Slot, number};
 use crate::math::View;
-use crate::scene::{Scene, Shadow, ShadowFilter};
-use casters::{Caster, Participants};
+use crate::scene::{Cull, Shadow, ShadowCull, ShadowFilter};
+use casters::Caster;
 use glam::DVec3;
 
 /// The shadow of one light: its maps, and how they are read.
@@ -69,17 +70,24 @@ pub struct CasterTest {
 }
 
 impl Face {
-    fn new<'a>(side: usize, view: View, casters: impl Iterator<Item = &'a Caster>) -> Self {
+    fn new<'a>(side: usize, view: View, cull: ShadowCull, casters: impl Iterator<Item = &'a Caster>) -> Self {
+        let cull = match cull {
+            ShadowCull::None => Cull::None,
+            ShadowCull::Front => Cull::Front,
+            ShadowCull::Back => Cull::Back,
+        };
         let mut face = Self { side, view, items: Vec::new(), tests: Vec::new() };
-        casters.for_each(|caster| face.push(caster));
+        casters.for_each(|caster| face.push(caster, cull));
         face
     }
 
-    /// Takes in a caster.
-    fn push(&mut self, caster: &Caster) {
+    /// Takes in a caster but for the faces that `cull` leaves out.
+    fn push(&mut self, caster: &Caster, cull: Cull) {
         let mut item = caster.item.clone();
         let first = number(self.tests.len());
-        item.slots.iter_mut().flatten().for_each(|slot| slot.draw += first);
+        for slot in item.slots.iter_mut().flatten() {
+            *slot = Slot { draw: slot.draw + first, cull, ..*slot };
+        }
         let number = number(self.items.len());
         self.tests.extend(caster.tests.iter().map(|test| CasterTest { item: number, test: test.clone() }));
         self.items.push(item);
@@ -174,23 +182,59 @@ pub fn orthonormal_basis(n: DVec3) -> (DVec3, DVec3) {
     (DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y))
 }
 
-/// The maps of one light at time `t`; `None` if nothing can cast on anything.
+/// The maps of one light; `None` if nothing can cast on anything.
 #[must_use]
-pub fn plan(scene: &Scene, t: f64, rays: Rays, shadow: &Shadow) -> Option<ShadowPass> {
-    let participants = Participants::of(scene, t, shadow.cull);
+pub(super) fn plan(participants: &Participants, rays: Rays, shadow: &Shadow) -> Option<ShadowPass> {
     let casters = participants.casters(rays);
+    if casters.is_empty() {
+        return None;
+    }
     let receivers = participants.receivers();
     let filter = Filter::settle(shadow);
     let maps = match rays {
         Rays::Parallel(direction) => {
             let items: Vec<&Item> = casters.iter().map(|caster| &caster.item).collect();
             let view = directional::fit(direction, &items, &receivers, shadow.resolution, &filter)?;
-            Maps::Directional(Face::new(0, view, casters.into_iter()))
+            Maps::Directional(Face::new(0, view, shadow.cull, casters.into_iter()))
         }
         Rays::FromPoint(position) => {
-            let faces = cube::faces(position, &casters, &receivers, shadow.resolution, &filter);
+            let faces = cube::faces(position, &casters, &receivers, shadow, &filter);
             (!faces.is_empty()).then_some(Maps::Cube { position, faces })?
         }
     };
     Some(ShadowPass { maps, filter, bias: shadow.bias })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::Limits;
+    use crate::plan::{FrameRequest, Plan};
+    use crate::scene::NewScene;
+    use serde_json::json;
+    use std::sync::Arc;
+
+    #[test]
+    fn lights_that_share_their_casters_cull_them_each_for_itself() {
+        let sun = |cull: &str| json!({ "type": "directional", "direction": [0, -1, 0], "shadow": { "cull": cull } });
+        let lamp = json!({ "type": "point", "position": [0, 3, 0], "shadow": { "cull": "front" } });
+        let document = json!({
+            "lights": { "a": sun("none"), "b": sun("back"), "c": lamp },
+            "meshes": { "box": { "type": "box" }, "floor": { "type": "plane", "size": [4, 4] } },
+            "instances": {
+                "box": { "mesh": "box", "translation": [0, 1, 0] },
+                "floor": { "mesh": "floor", "casts_shadow": false },
+            },
+        });
+        let new = NewScene { document: Some(document), ..NewScene::default() };
+        let scene = Arc::new(new.compile(&Limits::default()).unwrap());
+        let plan = Plan::new(&scene, &FrameRequest::default(), &Limits::default()).unwrap();
+        let culls = plan.shadows.iter().map(|pass| {
+            let items: Vec<&Item> = pass.faces().iter().flat_map(|face| &face.items).collect();
+            // The floor casts nothing; the lamp's box is below it, before one side of its cube.
+            assert_eq!(items.len(), 1);
+            items[0].slots[0].unwrap().cull
+        });
+        assert!(culls.eq([Cull::None, Cull::Back, Cull::Front]));
+    }
 }
