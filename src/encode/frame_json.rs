@@ -4,7 +4,7 @@
 use crate::math::view::SUBPIXELS;
 use crate::math::{Projection, View};
 use crate::plan::{Output, Plan};
-use crate::scene::{Lens, framing::ResolvedCamera};
+use crate::scene::{Instance, Lens, framing::ResolvedCamera};
 use glam::{DMat4, DVec3, DVec4};
 use serde_json::{Map, Value, json};
 
@@ -92,13 +92,14 @@ fn rows(matrix: DMat4) -> Value {
     json!(matrix.transpose().to_cols_array_2d())
 }
 
-/// Every visible instance by name: its value in a picture of instances, and its mesh.
+/// Every instance by name: its value in a picture of instances, its mesh, and whether it is drawn at all. Those
+/// that are hidden keep their values, so that the others' do not change with them.
 fn instances(plan: &Plan) -> Map<String, Value> {
-    let of = |(index, instance): (usize, &crate::scene::Instance)| {
+    let of = |(index, instance): (usize, &Instance)| {
         let mesh = &plan.scene.mesh_names[instance.mesh as usize];
-        (instance.name.clone(), json!({ "id": index + 1, "mesh": mesh }))
+        (instance.name.clone(), json!({ "id": index + 1, "mesh": mesh, "visible": instance.visible }))
     };
-    plan.scene.visible().map(of).collect()
+    plan.scene.instances.iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]

@@ -83,7 +83,12 @@ async fn its_description_says_what_the_values_mean() {
     let client = boxed().await;
     let description = frame_json(&entries(&client.get("/scenes/t/frame.zip").await));
     assert_eq!(description["depth_range"], json!([0.1, 30.0]));
-    let instances = json!({ "a box": { "id": 1, "mesh": "box" }, "z floor": { "id": 3, "mesh": "floor" } });
+    // Hidden ones keep their places in the order of names.
+    let instances = json!({
+        "a box": { "id": 1, "mesh": "box", "visible": true },
+        "hidden": { "id": 2, "mesh": "box", "visible": false },
+        "z floor": { "id": 3, "mesh": "floor", "visible": true },
+    });
     assert_eq!(description["instances"], instances);
     let camera = &description["camera"];
     assert_eq!(camera["position"], json!([102.0, 3.0, 8.0]));
