@@ -128,9 +128,9 @@ impl Render {
         let (product, request) = self.query()?;
         let new = read(&self.files, ModelOptions { up: self.up, floor: self.floor })?;
         let settings = Settings { machine: self.machine, ..environment()? };
-        let scene = std::sync::Arc::new(new.compile(&settings.limits())?);
         let renderer =
             Renderer::new(&settings).map_err(|error| Failure::new("cannot start threads", error))?;
+        let scene = std::sync::Arc::new(renderer.build(|| new.compile(renderer.limits()))?);
         for warning in &scene.warnings {
             eprintln!("rasterd: {}{}", place(warning), warning.detail);
         }

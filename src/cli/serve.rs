@@ -50,7 +50,7 @@ fn put_demo(app: &App) -> Result<(), Failure> {
         files: Some(demo::files()),
         options: ModelOptions { up: UpAxis::Y, floor: false },
     };
-    app.store.put(DEMO, new, &Precondition::None)?;
+    app.renderer.build(|| app.store.put(DEMO, new, &Precondition::None))?;
     Ok(())
 }
 

@@ -1,23 +1,28 @@
 //! Heavy work of a handler, on a thread where it blocks no other request.
 
 use super::problem::Problem;
-use crate::jobs::CancelOnDrop;
+use crate::jobs::{CancelOnDrop, Renderer};
 use std::sync::atomic::Ordering;
 use tokio::sync::Semaphore;
 
 /// Scenes that are compiled at the same time: each may hold gigabytes while it is.
 static COMPILATIONS: Semaphore = Semaphore::const_new(4);
 
-/// Compiles a scene when its turn comes. Once the caller has left it does not begin any more.
-pub(super) async fn compile<T, E>(task: impl FnOnce() -> Result<T, E> + Send + 'static) -> Result<T, Problem>
+/// Compiles a scene when its turn comes, on threads that `renderer` has for it. Once the caller has left it
+/// does not begin any more.
+pub(super) async fn compile<T, E>(
+    renderer: &Renderer,
+    task: impl FnOnce() -> Result<T, E> + Send + 'static,
+) -> Result<T, Problem>
 where
     T: Send + 'static,
     E: Into<Problem> + Send + 'static,
 {
     let turn = COMPILATIONS.acquire().await.map_err(|_| Problem::internal())?;
+    let renderer = renderer.clone();
     run(move || {
         let _turn = turn;
-        task()
+        renderer.build(task)
     })
     .await
 }
@@ -51,15 +56,19 @@ mod tests {
         let runtime = tokio::runtime::Builder::new_current_thread().max_blocking_threads(1).build();
         let runtime = runtime.expect("a runtime");
         let begun = Arc::new(AtomicBool::new(false));
+        let renderer = Renderer::new(&crate::settings::Settings::default()).expect("threads");
         let (go, gate) = mpsc::channel::<()>();
         runtime.block_on(async {
             let busy = tokio::task::spawn_blocking(move || gate.recv());
             let work = {
                 let begun = Arc::clone(&begun);
-                compile(move || {
-                    begun.store(true, Ordering::Relaxed);
-                    Ok::<_, Problem>(())
-                })
+                async move {
+                    let task = move || {
+                        begun.store(true, Ordering::Relaxed);
+                        Ok::<_, Problem>(())
+                    };
+                    compile(&renderer, task).await
+                }
             };
             let caller = tokio::spawn(work);
             tokio::task::yield_now().await; // the work now waits for the one thread

@@ -84,7 +84,8 @@ pub(super) async fn replace(
     let location = request.uri().path().to_owned();
     let bytes = body::bytes(request, app.body_bounds()).await?;
     let store = Arc::clone(&app.store);
-    let entry = blocking::compile(move || store.put_file(&id, &name, bytes, &condition)).await?;
+    let entry =
+        blocking::compile(&app.renderer, move || store.put_file(&id, &name, bytes, &condition)).await?;
     let reply = scenes::changed(&entry, false);
     Ok(if known.is_none() {
         (StatusCode::CREATED, [(LOCATION, location)], reply).into_response()
@@ -110,7 +111,7 @@ pub(super) async fn remove(
     exact(&app.entry(&id)?.files, &name).ok_or_else(|| no_file(&name))?;
     let condition = etag::if_match(&headers);
     let store = Arc::clone(&app.store);
-    blocking::compile(move || store.delete_file(&id, &name, &condition)).await?;
+    blocking::compile(&app.renderer, move || store.delete_file(&id, &name, &condition)).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 

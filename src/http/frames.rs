@@ -85,7 +85,7 @@ pub(super) async fn changed(app: &App, id: &str, request: Request) -> Result<Arc
     let entry = app.entry(id)?;
     let patch = body::patch(request, app.body_bounds()).await?;
     let limits = *app.renderer.limits();
-    blocking::compile(move || entry.patched(&patch, &limits)).await
+    blocking::compile(&app.renderer, move || entry.patched(&patch, &limits)).await
 }
 
 /// Draws and replies, or says that the client has the picture already; `name` is the scene's, for the

@@ -32,6 +32,6 @@ pub(super) async fn draw(
     let headers = request.headers().clone();
     let new = body::scene(request, app.body_bounds(), source).await?;
     let limits = *app.renderer.limits();
-    let scene = blocking::compile(move || new.compile(&limits)).await?;
+    let scene = blocking::compile(&app.renderer, move || new.compile(&limits)).await?;
     frames::draw(&app, "-", Arc::new(scene), frame, format, &headers).await
 }

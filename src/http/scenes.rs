@@ -38,7 +38,7 @@ pub(super) async fn create(
     let source = pairs.read(source)?;
     let new = body::scene(request, app.body_bounds(), source).await?;
     let store = Arc::clone(&app.store);
-    let entry = blocking::compile(move || store.create(new)).await?;
+    let entry = blocking::compile(&app.renderer, move || store.create(new)).await?;
     Ok(changed(&entry, true))
 }
 
@@ -84,7 +84,7 @@ pub(super) async fn replace(
     let condition = etag::precondition(request.headers());
     let new = body::scene(request, app.body_bounds(), source).await?;
     let store = Arc::clone(&app.store);
-    let (entry, created) = blocking::compile(move || store.put(&id, new, &condition)).await?;
+    let (entry, created) = blocking::compile(&app.renderer, move || store.put(&id, new, &condition)).await?;
     Ok(changed(&entry, created))
 }
 
@@ -107,7 +107,7 @@ pub(super) async fn patch(
     let condition = etag::precondition(request.headers());
     let patch = body::patch(request, app.body_bounds()).await?;
     let store = Arc::clone(&app.store);
-    let entry = blocking::compile(move || store.patch(&id, &patch, &condition)).await?;
+    let entry = blocking::compile(&app.renderer, move || store.patch(&id, &patch, &condition)).await?;
     Ok(changed(&entry, false))
 }
 

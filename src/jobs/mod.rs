@@ -44,6 +44,8 @@ pub struct Renderer {
 /// What every job shares.
 struct Engine {
     pool: rayon::ThreadPool,
+    /// As many threads again, for what frames are drawn from; see [`Renderer::build`].
+    builders: rayon::ThreadPool,
     level: Level,
     elide: Elide,
     limits: Limits,
@@ -143,6 +145,13 @@ impl Renderer {
             .map_err(|_| JobError::Panicked)?
     }
 
+    /// Runs `task`, which makes something that frames are drawn from, on threads that do nothing else: as many
+    /// as draw. They are not the same, since parts of it run for seconds without a break, and frames that
+    /// take turns of milliseconds would stand still for as long.
+    pub fn build<T: Send>(&self, task: impl FnOnce() -> T + Send) -> T {
+        self.engine.builders.install(task)
+    }
+
     /// Makes a file on this thread, now: the same bytes without queue and deadline.
     ///
     /// # Errors
@@ -184,17 +193,9 @@ impl Renderer {
 
 impl Engine {
     fn new(machine: &Machine, limits: Limits, draw: Box<Draw>) -> std::io::Result<Self> {
-        // 0 is rayon's word for "as many as the machine runs at once".
-        let threads = machine.threads.map_or(0, std::num::NonZeroUsize::get);
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .thread_name(|index| format!("draw-{index}"))
-            // A panic that no scope carries to its caller would abort the process otherwise.
-            .panic_handler(|_| tracing::error!("a drawing thread panicked"))
-            .build()
-            .map_err(std::io::Error::other)?;
+        let (pool, builders) = (pool(machine, "draw")?, pool(machine, "build")?);
         let level = machine.simd.unwrap_or_else(Simd::best).level();
-        Ok(Self { pool, level, elide: machine.elide.clone(), limits, draw })
+        Ok(Self { pool, builders, level, elide: machine.elide.clone(), limits, draw })
     }
 
     fn plan(&self, scene: &Arc<Scene>, request: &FrameRequest) -> Result<Plan, PlanError> {
@@ -244,6 +245,19 @@ impl Engine {
             Err(JobError::Plan(PlanError::Query(faults)))
         }
     }
+}
+
+/// Threads called `name`, as many as `machine` has for drawing.
+fn pool(machine: &Machine, name: &'static str) -> std::io::Result<rayon::ThreadPool> {
+    // 0 is rayon's word for "as many as the machine runs at once".
+    let threads = machine.threads.map_or(0, std::num::NonZeroUsize::get);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .thread_name(move |index| format!("{name}-{index}"))
+        // A panic that no scope carries to its caller would abort the process otherwise.
+        .panic_handler(|_| tracing::error!("a thread of a pool panicked"))
+        .build()
+        .map_err(std::io::Error::other)
 }
 
 /// The fault of a pixel coordinate that the picture does not have.

@@ -168,3 +168,11 @@ async fn the_etag_needs_no_turn() {
     );
     caller.abort();
 }
+
+#[test]
+fn what_is_built_is_built_on_as_many_threads_as_draw() {
+    let machine = Machine { threads: std::num::NonZeroUsize::new(3), ..Machine::default() };
+    let settings = Settings { machine, ..Settings::default() };
+    let renderer = renderer(&settings, Box::new(|_, _| Ok(vec![frame()])));
+    assert_eq!(renderer.build(rayon::current_num_threads), 3);
+}
