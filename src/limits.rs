@@ -62,8 +62,7 @@ pub const MAX_PATCH_DEPTH: usize = 64;
 /// document can place a large mesh often. What is beyond keeps the bounds of its turned box. Fixed.
 pub const MAX_MEASURED_VERTICES: usize = 1 << 27;
 
-/// Frames of a turntable: one for each degree. More would only last longer, and hold the others up for
-/// as long. Fixed.
+/// Frames of a turntable: one for each degree. More would only last longer. Fixed.
 pub const MAX_TURNTABLE_FRAMES: u32 = 360;
 
 /// Bounds on what a client may ask for. A value over its bound is a 413 that names limit, value
@@ -77,8 +76,8 @@ pub struct Limits {
     pub picture_side: u32,
     /// Pixels of a picture: one is held as 4 bytes, or 16 on its way. Fixed.
     pub picture_pixels: u64,
-    /// Bytes of working memory for one frame (`RASTERD_MAX_FRAME_BYTES`): 65 k instances of a
-    /// million triangles are a tiny document.
+    /// Bytes of working memory for one frame, those of the frames before it in the same file among them
+    /// (`RASTERD_MAX_FRAME_BYTES`): 65 k instances of a million triangles are a tiny document.
     pub frame_bytes: u64,
     /// Bytes of decoded meshes and textures of one scene (`RASTERD_MAX_SCENE_BYTES`): a small PNG
     /// can decode to gigabytes.

@@ -13,7 +13,7 @@ use axum::response::Response;
 ///
 /// The first frame is that of the same query; each next one is turned by 360°/`frames` more about the
 /// vertical through the target. A turn lasts 2.5 s, or `frames` fiftieths of a second where that is more,
-/// and begins anew. Each frame has a frame's deadline.
+/// and begins anew. Each frame waits for a turn of its own among others' frames, and has a frame's deadline.
 #[utoipa::path(
     get, path = "/scenes/{id}/turntable.{format}", tag = "frames",
     params(("id" = String, Path, description = "The scene"), openapi::Turn, openapi::FrameQuery),

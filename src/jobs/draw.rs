@@ -1,6 +1,7 @@
 //! The stages after the request: plan → pipeline → encode, for every frame of a product.
 
 use super::product::{FileTag, Product, Rendered};
+use super::shift::Shift;
 use super::{Engine, JobError};
 use crate::encode::{self, Animation, Zip};
 use crate::pipeline::{Cancelled, Frame, Work};
@@ -19,16 +20,17 @@ const TURN_CS: u32 = 250;
 /// The shortest time that browsers show a frame of a GIF; what is below counts as ten times that.
 const SHORTEST_DELAY_CS: u32 = 2;
 
-/// Makes a product, one frame after another.
+/// Makes a product, one frame after another; between them, `shift` lets other jobs have their turn.
 pub(super) fn make(
     engine: &Engine,
     scene: &Arc<Scene>,
     request: &FrameRequest,
     product: &Product,
     work: Work<'_>,
+    shift: Option<&mut Shift>,
 ) -> Result<Rendered, JobError> {
     let requests = product.requests(scene, request, &engine.limits)?;
-    let mut making = Making::new(engine, scene, product, work);
+    let mut making = Making::new(engine, scene, product, work, shift);
     let bytes = match product {
         Product::Still(format) => {
             let frame = making.frame(&requests[0])?;
@@ -40,6 +42,7 @@ pub(super) fn make(
         Product::Turntable { frames, format: Animation::Gif } => {
             let sides: Vec<Frame> =
                 requests.iter().map(|side| making.frame(side)).collect::<Result<_, JobError>>()?;
+            making.begin_last_step();
             encode::gif(&sides, delay_cs(*frames), &work)?
         }
         Product::Archive { outputs } => making.archive(&requests, outputs)?,
@@ -57,8 +60,12 @@ fn delay_cs(frames: u32) -> u16 {
 struct Making<'a> {
     engine: &'a Engine,
     scene: &'a Arc<Scene>,
+    product: &'a Product,
     work: Work<'a>,
+    shift: Option<&'a mut Shift>,
+    frames: u32,
     began: Instant,
+    waiting: Duration,
     planning: Duration,
     drawing: Duration,
     size: [u32; 2],
@@ -69,12 +76,22 @@ struct Making<'a> {
 }
 
 impl<'a> Making<'a> {
-    fn new(engine: &'a Engine, scene: &'a Arc<Scene>, product: &Product, work: Work<'a>) -> Self {
+    fn new(
+        engine: &'a Engine,
+        scene: &'a Arc<Scene>,
+        product: &'a Product,
+        work: Work<'a>,
+        shift: Option<&'a mut Shift>,
+    ) -> Self {
         Self {
             engine,
             scene,
+            product,
             work,
+            shift,
+            frames: 0,
             began: Instant::now(),
+            waiting: Duration::ZERO,
             planning: Duration::ZERO,
             drawing: Duration::ZERO,
             size: [0; 2],
@@ -87,9 +104,30 @@ impl<'a> Making<'a> {
 
     /// Plans and draws one frame.
     fn frame(&mut self, request: &FrameRequest) -> Result<Frame, JobError> {
-        let plan = self.plan(request)?;
-        let frames = self.draw(std::slice::from_ref(&plan))?;
+        self.wait_for_turn()?;
+        let plan = [self.plan(request)?];
+        self.product.check_memory(self.scene, request, &plan, &self.engine.limits)?;
+        let frames = self.draw(&plan)?;
         Ok(frames.into_iter().next().expect("a frame for each plan"))
+    }
+
+    /// The first frame is drawn in the turn that the job came with.
+    fn wait_for_turn(&mut self) -> Result<(), JobError> {
+        self.frames += 1;
+        if let Some(shift) = self.shift.as_mut().filter(|_| self.frames > 1) {
+            let began = Instant::now();
+            shift.next_frame()?;
+            self.waiting += began.elapsed();
+            self.work.check()?;
+        }
+        Ok(())
+    }
+
+    /// What is left to do has the time of a frame.
+    fn begin_last_step(&mut self) {
+        if let Some(shift) = &self.shift {
+            shift.last_step();
+        }
     }
 
     fn plan(&mut self, request: &FrameRequest) -> Result<Plan, JobError> {
@@ -130,6 +168,7 @@ impl<'a> Making<'a> {
     fn archive(&mut self, requests: &[FrameRequest], outputs: &[Output]) -> Result<Vec<u8>, JobError> {
         let plans: Vec<Plan> =
             requests.iter().map(|request| self.plan(request)).collect::<Result<_, JobError>>()?;
+        self.product.check_memory(self.scene, &requests[0], &plans, &self.engine.limits)?;
         let frames = self.draw(&plans)?;
         let mut archive = Zip::default();
         for (frame, output) in frames.iter().zip(outputs) {
@@ -140,9 +179,9 @@ impl<'a> Making<'a> {
         Ok(archive.finish())
     }
 
-    /// The finished product. What was neither planning nor drawing was encoding.
+    /// The finished product. What was neither planning nor drawing was encoding; waiting is told apart.
     fn finish(self, bytes: Vec<u8>, content_type: &'static str) -> Rendered {
-        let total = self.began.elapsed();
+        let total = self.began.elapsed().saturating_sub(self.waiting);
         let encoding = total.saturating_sub(self.planning).saturating_sub(self.drawing);
         let mut timings = vec![("plan", milliseconds(self.planning))];
         timings.extend(self.passes);

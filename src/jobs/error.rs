@@ -20,7 +20,7 @@ pub enum JobError {
     /// No job is taken any more.
     #[error("the server is going down")]
     Closing,
-    /// It took longer than this, waiting included.
+    /// A frame of it took longer than this, waiting for its turn included.
     #[error("the frame took longer than its deadline of {} s", .0.as_secs_f64())]
     Deadline(Duration),
     /// Whoever asked has gone.

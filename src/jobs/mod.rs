@@ -1,15 +1,15 @@
 //! The bridge between two worlds: tokio does I/O, rayon does pixels.
 //!
 //! In: a scene, a [`FrameRequest`] and the [`Product`] to make of it. Out: a finished file, or why there
-//! is none. A job waits in a
-//! bounded [`Queue`], then runs on a thread of its own that drives the shared pool; its deadline and
-//! the caller that goes away both set the flag that the tile loop reads.
+//! is none. A job waits in a bounded [`Queue`], then runs on a thread of its own that drives the shared
+//! pool; a frame's deadline and the caller that goes away both set the flag that the tile loop reads.
 
 mod cancel;
 mod draw;
 mod error;
 mod product;
 mod queue;
+mod shift;
 
 pub use crate::encode::{Animation, Format};
 pub(crate) use cancel::CancelOnDrop;
@@ -27,11 +27,11 @@ use crate::scene::Scene;
 use crate::settings::{Machine, Settings, Simd};
 use fearless_simd::Level;
 use product::FileTag;
+use shift::{Clock, Shift};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
-use tokio::time::timeout_at;
 
 /// Draws frames, a few at a time, on one pool of threads. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -92,7 +92,9 @@ impl Renderer {
         self.engine.pool.current_num_threads()
     }
 
-    /// Makes a file of `request` when its turn comes. Each of its frames has the deadline's time.
+    /// Makes a file of `request` when its turn comes. Each side of a turntable waits for a turn of its own
+    /// and has the deadline's time, this wait included, and so has what makes one file of them. The pictures
+    /// of an archive are one frame.
     ///
     /// # Errors
     /// See [`JobError`].
@@ -103,12 +105,12 @@ impl Renderer {
         product: impl Into<Product>,
     ) -> Result<Rendered, JobError> {
         let product = product.into();
-        let deadline = self.deadline.saturating_mul(product.frame_count());
-        let task =
-            move |engine: &Engine, cancel: &AtomicBool| engine.render(&scene, &request, product, cancel);
-        let (mut rendered, waited) = self.run(deadline, task).await?;
-        rendered.add_wait(waited);
-        Ok(rendered)
+        self.run(product.is_series(), move |engine, cancel, shift| {
+            let mut rendered = engine.render(&scene, &request, product, cancel, Some(shift))?;
+            rendered.add_wait(shift.waited());
+            Ok(rendered)
+        })
+        .await
     }
 
     /// What is at pixel (`x`, `y`) of the frame that `request` asks for.
@@ -122,8 +124,7 @@ impl Renderer {
         x: u32,
         y: u32,
     ) -> Result<Option<Hit>, JobError> {
-        let task = move |engine: &Engine, cancel: &AtomicBool| engine.pick(&scene, &request, x, y, cancel);
-        self.run(self.deadline, task).await.map(|(pick, _)| pick)
+        self.run(false, move |engine, cancel, _| engine.pick(&scene, &request, x, y, cancel)).await
     }
 
     /// The ETag that [`Renderer::render`] would answer with, without drawing and without a turn in
@@ -163,31 +164,26 @@ impl Renderer {
         product: impl Into<Product>,
     ) -> Result<Rendered, JobError> {
         let product = product.into();
-        caught(|| self.engine.render(scene, request, product, &AtomicBool::new(false)))
+        caught(|| self.engine.render(scene, request, product, &AtomicBool::new(false), None))
     }
 
-    /// Runs `task` on a blocking thread when its turn comes. Dropping the returned future cancels it.
-    /// The turn ends with the task itself, not with the caller's patience.
+    /// Runs `task` on a blocking thread when its turn comes, the first of a series or the only one. Dropping
+    /// the returned future cancels it. The turn ends with the task itself, not with the caller's patience.
     async fn run<T: Send + 'static>(
         &self,
-        deadline: Duration,
-        task: impl FnOnce(&Engine, &AtomicBool) -> Result<T, JobError> + Send + 'static,
-    ) -> Result<(T, Duration), JobError> {
+        is_series: bool,
+        task: impl FnOnce(&Engine, &AtomicBool, &mut Shift) -> Result<T, JobError> + Send + 'static,
+    ) -> Result<T, JobError> {
         let arrived = Instant::now();
-        let late = || JobError::Deadline(deadline);
-        let end = (arrived + deadline).into();
-        let turn = timeout_at(end, self.queue.turn()).await.map_err(|_| late())??;
-        let waited = arrived.elapsed();
+        let clock = Arc::new(Clock::start(self.deadline));
+        let turn = clock.wait(self.queue.turn(is_series)).await??;
+        let mut shift = Shift::new(turn, Arc::clone(&clock), arrived.elapsed());
 
         let cancel = CancelOnDrop::default();
         let flag = cancel.flag();
         let engine = Arc::clone(&self.engine);
-        let job = tokio::task::spawn_blocking(move || {
-            let _turn = turn;
-            caught(|| task(&engine, &flag))
-        });
-        let done = timeout_at(end, job).await.map_err(|_| late())?;
-        done.map_err(|_| JobError::Panicked)?.map(|value| (value, waited))
+        let job = tokio::task::spawn_blocking(move || caught(|| task(&engine, &flag, &mut shift)));
+        clock.wait(job).await?.map_err(|_| JobError::Panicked)?
     }
 }
 
@@ -213,8 +209,9 @@ impl Engine {
         request: &FrameRequest,
         product: Product,
         cancel: &AtomicBool,
+        shift: Option<&mut Shift>,
     ) -> Result<Rendered, JobError> {
-        draw::make(self, scene, request, &product.settled(request), self.work(cancel))
+        draw::make(self, scene, request, &product.settled(request), self.work(cancel), shift)
     }
 
     fn etag(&self, scene: &Arc<Scene>, request: &FrameRequest, product: Product) -> Result<String, JobError> {

@@ -74,13 +74,9 @@ impl Product {
         }
     }
 
-    /// Frames that are drawn for it.
-    pub(super) fn frame_count(&self) -> u32 {
-        match self {
-            Self::Still(_) => 1,
-            Self::Turntable { frames, .. } => *frames,
-            Self::Archive { outputs } => u32::try_from(outputs.len()).unwrap_or(u32::MAX),
-        }
+    /// Whether it is made of several frames, one after the other.
+    pub(super) fn is_series(&self) -> bool {
+        matches!(self, Self::Turntable { frames: 2.., .. })
     }
 
     /// What each of its frames asks for; at least one.
@@ -93,7 +89,7 @@ impl Product {
         request: &FrameRequest,
         limits: &Limits,
     ) -> Result<Vec<FrameRequest>, JobError> {
-        self.check_size(scene, request, limits)?;
+        check_bytes(self.held_bytes(scene, request), limits)?;
         match self {
             Self::Still(format) => Ok(vec![showing(request, format.drawn_as(request.output)?)]),
             Self::Turntable { frames, format } => {
@@ -105,31 +101,41 @@ impl Product {
         }
     }
 
-    /// Refuses more frames than fit the memory of one, which holds them all until they are a file.
-    fn check_size(&self, scene: &Scene, request: &FrameRequest, limits: &Limits) -> Result<(), PlanError> {
-        let held = match self {
-            Self::Still(_) => return Ok(()),
+    /// Bytes of the frames that it holds until they are a file.
+    fn held_bytes(&self, scene: &Scene, request: &FrameRequest) -> u64 {
+        let (frames, bytes) = match self {
+            Self::Still(_) => (0, 0),
             // Pixels and indices.
-            Self::Turntable { format: Animation::Gif, .. } => 5,
+            Self::Turntable { frames, format: Animation::Gif } => (u64::from(*frames), 5),
             // Encoded as it comes, in the worst case as large as it was.
-            Self::Turntable { format: Animation::Apng, .. } => 4,
+            Self::Turntable { frames, format: Animation::Apng } => (u64::from(*frames), 4),
             // Pixels and files.
-            Self::Archive { .. } => 8,
+            Self::Archive { outputs } => (outputs.len() as u64, 8),
         };
         let side = |asked: Option<u32>, own: u32| u64::from(asked.unwrap_or(own));
         let width = side(request.width, scene.render.width);
         let height = side(request.height, scene.render.height);
-        let pixels = width.saturating_mul(height).saturating_mul(self.frame_count().into());
-        let bytes = pixels.saturating_mul(held);
-        if bytes <= limits.frame_bytes {
-            return Ok(());
-        }
-        Err(PlanError::TooLarge {
-            what: "memory of all frames in bytes".to_owned(),
-            limit: limits.frame_bytes,
-            value: bytes,
-            setting: Some("RASTERD_MAX_FRAME_BYTES"),
-        })
+        width.saturating_mul(height).saturating_mul(frames).saturating_mul(bytes)
+    }
+
+    /// Refuses more frames than fit the memory of one beside what `plans`, which are drawn together, take
+    /// to be drawn: the triangles of each pass over them are there to the last, the rest of a frame's memory
+    /// is free before the next.
+    pub(super) fn check_memory(
+        &self,
+        scene: &Scene,
+        request: &FrameRequest,
+        plans: &[Plan],
+        limits: &Limits,
+    ) -> Result<(), PlanError> {
+        let is_pass = |(at, plan): &(usize, &Plan)| {
+            !plans[..*at].iter().any(|earlier| plan.shows_the_triangles_of(earlier))
+        };
+        let passes = plans.iter().enumerate().filter(is_pass);
+        let geometry = passes.fold(0u64, |sum, (_, plan)| sum.saturating_add(plan.geometry_bytes()));
+        let rest = plans.iter().map(|plan| plan.bytes() - plan.geometry_bytes()).max().unwrap_or(0);
+        let held = self.held_bytes(scene, request);
+        check_bytes(held.saturating_add(geometry).saturating_add(rest), limits)
     }
 
     /// What tells its file from others of the same frames.
@@ -140,6 +146,15 @@ impl Product {
             Self::Archive { .. } => "zip".to_owned(),
         }
     }
+}
+
+fn check_bytes(value: u64, limits: &Limits) -> Result<(), PlanError> {
+    let limit = limits.frame_bytes;
+    if value <= limit {
+        return Ok(());
+    }
+    let what = "memory of all frames in bytes".to_owned();
+    Err(PlanError::TooLarge { what, limit, value, setting: Some("RASTERD_MAX_FRAME_BYTES") })
 }
 
 /// The same frame with another output.

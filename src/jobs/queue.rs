@@ -1,4 +1,8 @@
 //! The bounded queue: so many run, so many wait, one more is refused.
+//!
+//! A series of frames gives its turn back after each, and goes to the end of those who wait: what it
+//! takes does not keep single frames from their turn. It keeps its frames meanwhile; so only as many
+//! series are under way as jobs may run.
 
 use super::JobError;
 use std::sync::Arc;
@@ -11,6 +15,8 @@ pub struct Queue {
     places: Arc<Semaphore>,
     /// One permit for each job that may run.
     slots: Arc<Semaphore>,
+    /// One permit for each series that may be under way.
+    series: Arc<Semaphore>,
     running: usize,
     waiting: usize,
 }
@@ -27,8 +33,26 @@ pub struct QueueDepth {
 /// The right to run; ends when dropped.
 #[derive(Debug)]
 pub(super) struct Turn {
-    _slot: OwnedSemaphorePermit,
+    slots: Arc<Semaphore>,
+    slot: Option<OwnedSemaphorePermit>,
+    _series: Option<OwnedSemaphorePermit>,
     _place: OwnedSemaphorePermit,
+}
+
+impl Turn {
+    /// Lets those who wait run first, and waits for the next turn.
+    ///
+    /// # Errors
+    /// [`JobError::Closing`]
+    pub(super) async fn pass_on(&mut self) -> Result<(), JobError> {
+        self.slot = None;
+        self.slot = Some(permit(&self.slots).await?);
+        Ok(())
+    }
+}
+
+async fn permit(of: &Arc<Semaphore>) -> Result<OwnedSemaphorePermit, JobError> {
+    Arc::clone(of).acquire_owned().await.map_err(|_| JobError::Closing)
 }
 
 impl Queue {
@@ -40,19 +64,21 @@ impl Queue {
         Self {
             places: Arc::new(Semaphore::new(running + places)),
             slots: Arc::new(Semaphore::new(running)),
+            series: Arc::new(Semaphore::new(running)),
             running,
             waiting: places,
         }
     }
 
-    /// Waits for a turn.
+    /// Waits for a turn; `is_series`: for the first of several.
     ///
     /// # Errors
     /// [`JobError::Full`] and [`JobError::Closing`], both at once, never after a wait.
-    pub(super) async fn turn(&self) -> Result<Turn, JobError> {
+    pub(super) async fn turn(&self, is_series: bool) -> Result<Turn, JobError> {
         let place = Arc::clone(&self.places).try_acquire_owned().map_err(|_| self.refusal())?;
-        let slot = Arc::clone(&self.slots).acquire_owned().await.map_err(|_| JobError::Closing)?;
-        Ok(Turn { _slot: slot, _place: place })
+        let series = if is_series { Some(permit(&self.series).await?) } else { None };
+        let slot = Some(permit(&self.slots).await?);
+        Ok(Turn { slots: Arc::clone(&self.slots), slot, _series: series, _place: place })
     }
 
     /// Takes no more jobs. Those that run or wait keep their place.

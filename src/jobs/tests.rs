@@ -1,6 +1,7 @@
 use super::*;
 use crate::pipeline::{Frame, Pixels};
 use crate::scene::{ModelOptions, NewScene, UpAxis};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread::sleep;
@@ -167,6 +168,109 @@ async fn the_etag_needs_no_turn() {
         renderer.etag(scene(), FrameRequest::default(), Format::Png).await.expect("an ETag").starts_with('"')
     );
     caller.abort();
+}
+
+/// A turntable of so many frames.
+fn turn(frames: u32) -> Product {
+    Product::Turntable { frames, format: Animation::Gif }
+}
+
+/// A renderer for one frame at a time that notes the widths of frames in the order in which they are drawn;
+/// it draws the first once there is a message at the gate.
+fn noting(deadline: Duration) -> (Renderer, mpsc::Sender<()>, Arc<Mutex<Vec<u32>>>) {
+    let drawn = Arc::new(Mutex::new(Vec::new()));
+    let (go, gate) = mpsc::channel();
+    let gate = Mutex::new(gate);
+    let note = Arc::clone(&drawn);
+    let draw: Box<Draw> = Box::new(move |plans, _| {
+        let mut drawn = note.lock().expect("one frame at a time");
+        if drawn.is_empty() {
+            gate.lock().expect("one frame at a time").recv_timeout(PATIENCE).expect("let go");
+        }
+        drawn.push(plans[0].view.width);
+        Ok(vec![frame()])
+    });
+    (renderer(&settings(4, deadline), draw), go, drawn)
+}
+
+/// Asks for `product` of `width` pixels in a row, for which it has taken its place when this returns.
+async fn asked(
+    renderer: &Renderer,
+    width: u32,
+    product: impl Into<Product>,
+) -> tokio::task::JoinHandle<Result<Rendered, JobError>> {
+    let (before, own, product) = (renderer.queue().depth(), renderer.clone(), product.into());
+    let request = FrameRequest { width: Some(width), ..FrameRequest::default() };
+    let caller = tokio::spawn(async move { own.render(scene(), request, product).await });
+    let inside = |depth: QueueDepth| depth.running + depth.waiting;
+    until(|| inside(renderer.queue().depth()) > inside(before)).await;
+    caller
+}
+
+#[tokio::test]
+async fn single_frames_have_their_turn_between_those_of_a_series() {
+    let (renderer, go, drawn) = noting(PATIENCE);
+    let callers = [
+        asked(&renderer, 1, turn(3)).await,
+        asked(&renderer, 2, turn(2)).await,
+        asked(&renderer, 3, Format::Png).await,
+        asked(&renderer, 4, Format::Png).await,
+    ];
+    go.send(()).expect("a waiting job");
+    for caller in callers {
+        let rendered = caller.await.expect("no panic").expect("a file");
+        assert!(rendered.timing("queue").is_some());
+    }
+    // One series at a time: what it has drawn takes memory until it is done.
+    assert_eq!(*drawn.lock().expect("no panic"), [1, 3, 4, 1, 1, 2, 2]);
+    assert_eq!(renderer.queue().depth(), QueueDepth { running: 0, waiting: 0 });
+}
+
+#[tokio::test]
+async fn a_series_may_take_longer_than_one_of_its_frames() {
+    let deadline = Duration::from_millis(400);
+    let draw: Box<Draw> = Box::new(|_, _| {
+        sleep(Duration::from_millis(80));
+        Ok(vec![frame()])
+    });
+    let renderer = renderer(&settings(0, deadline), draw);
+    let began = Instant::now();
+    renderer.render(scene(), FrameRequest::default(), turn(8)).await.expect("no frame was late");
+    assert!(began.elapsed() > deadline);
+}
+
+#[tokio::test]
+async fn a_late_frame_ends_its_series() {
+    let (ended, end) = mpsc::channel();
+    let late = endless(ended);
+    let drawn = AtomicUsize::new(0);
+    let draw: Box<Draw> = Box::new(move |plans, work| match drawn.fetch_add(1, Ordering::Relaxed) {
+        0 | 1 => Ok(vec![frame()]),
+        _ => late(plans, work),
+    });
+    let renderer = renderer(&settings(0, Duration::from_millis(200)), draw);
+    let outcome = renderer.render(scene(), FrameRequest::default(), turn(8)).await;
+    assert!(matches!(outcome, Err(JobError::Deadline(_))));
+    end.recv_timeout(PATIENCE).expect("the job was cancelled");
+}
+
+#[test]
+fn frames_that_wait_for_the_last_count_with_what_that_takes() {
+    let pixels = 800 * 600;
+    let scene = scene();
+    let plan = Plan::new(&scene, &FrameRequest::default(), &Limits::default()).expect("a plan");
+    let archive = Product::Archive { outputs: vec![Output::Color, Output::Instance] };
+    let apng = Product::Turntable { frames: 3, format: Animation::Apng };
+    for (product, held) in [(turn(3), 15 * pixels), (apng, 12 * pixels), (archive, 16 * pixels)] {
+        let outcome = |max_frame_bytes: u64| {
+            let settings = Settings { max_frame_bytes, ..settings(0, PATIENCE) };
+            let draw: Box<Draw> = Box::new(|plans, _| Ok(plans.iter().map(|_| frame()).collect()));
+            renderer(&settings, draw).render_now(&scene, &FrameRequest::default(), product.clone())
+        };
+        outcome(held + plan.bytes()).expect("just enough");
+        let refused = outcome(held + plan.bytes() - 1);
+        assert!(matches!(refused, Err(JobError::Plan(PlanError::TooLarge { .. }))), "{product:?}");
+    }
 }
 
 #[test]

@@ -60,6 +60,8 @@ pub struct Plan {
     pub depth_range: Option<[f64; 2]>,
     /// Working memory that it will take.
     bytes: u64,
+    /// That of its items among it.
+    geometry_bytes: u64,
 }
 
 /// A light that shines.
@@ -128,6 +130,7 @@ impl Plan {
             },
             depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
             bytes: 0,
+            geometry_bytes: 0,
         };
         plan.charge(u64::from(width) * u64::from(height) * request.output.pixel_bytes(), limits)?;
         let transparent = plan.background == Background::Transparent;
@@ -167,6 +170,7 @@ impl Plan {
                 continue;
             }
             self.charge(placed.frame_bytes(), limits)?;
+            self.geometry_bytes += placed.frame_bytes();
             self.items.push(placed);
         }
         Ok(())
@@ -215,6 +219,18 @@ impl Plan {
             value: self.bytes,
             setting: Some("RASTERD_MAX_FRAME_BYTES"),
         })
+    }
+
+    /// Bytes of working memory that it will take.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Those of them that a pass over its triangles takes, which plans that show the same ones share.
+    #[must_use]
+    pub fn geometry_bytes(&self) -> u64 {
+        self.geometry_bytes
     }
 
     /// Whether a pass over this plan's triangles is one over those of `other` too: the same view of the
