@@ -14,6 +14,7 @@ use axum::response::Response;
 /// The first frame is that of the same query; each next one is turned by 360°/`frames` more about the
 /// vertical through the target. A turn lasts 2.5 s, or `frames` fiftieths of a second where that is more,
 /// and begins anew. Each frame waits for a turn of its own among others' frames, and has a frame's deadline.
+/// Depths need a `far`, here or in the scene's camera, so that all sides share one range.
 #[utoipa::path(
     get, path = "/scenes/{id}/turntable.{format}", tag = "frames",
     params(("id" = String, Path, description = "The scene"), openapi::Turn, openapi::FrameQuery),

@@ -5,7 +5,7 @@ use super::shift::Shift;
 use super::{Engine, JobError};
 use crate::encode::{self, Animation, Zip};
 use crate::pipeline::{Cancelled, Frame, Work};
-use crate::plan::{self, FrameRequest, Output, Plan, PlanError, QueryFault};
+use crate::plan::{self, FrameRequest, Output, Plan, PlanError};
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -48,6 +48,41 @@ pub(super) fn make(
         Product::Archive { outputs } => making.archive(&requests, outputs)?,
     };
     Ok(making.finish(bytes, product.content_type()))
+}
+
+/// The tag of what [`make`] makes, without making it.
+pub(super) fn etag(
+    engine: &Engine,
+    scene: &Arc<Scene>,
+    request: &FrameRequest,
+    product: &Product,
+    work: Work<'_>,
+) -> Result<String, JobError> {
+    let requests = product.requests(scene, request, &engine.limits)?;
+    let mut tag = FileTag::new(product);
+    let mut depth_range = None;
+    for request in &requests {
+        work.check()?;
+        let outline = Plan::outline(scene, request, &engine.limits)?;
+        tag.add(&outline);
+        depth_range = depth_range.or(outline.depth_range);
+    }
+    if let Product::Archive { outputs } = product {
+        let outline = Plan::outline(scene, &requests[0], &engine.limits)?;
+        tag.add_description(&description(&outline, &requests[0], outputs, depth_range)?);
+    }
+    Ok(tag.finish())
+}
+
+/// The `frame.json` of an archive whose first picture `request` asks for.
+fn description(
+    plan: &Plan,
+    request: &FrameRequest,
+    outputs: &[Output],
+    depth_range: Option<[f64; 2]>,
+) -> Result<Vec<u8>, PlanError> {
+    let camera = plan::camera(&plan.scene, request, plan.view.width, plan.view.height)?;
+    Ok(encode::frame_json(plan, &camera, outputs, depth_range))
 }
 
 /// How long each of `frames` is shown.
@@ -136,21 +171,8 @@ impl<'a> Making<'a> {
         self.planning += began.elapsed();
         self.tag.add(&plan);
         self.size = [plan.view.width, plan.view.height];
-        self.take_depth_range(&plan)?;
-        Ok(plan)
-    }
-
-    /// A file has one range of depth, or its values could not be compared.
-    fn take_depth_range(&mut self, plan: &Plan) -> Result<(), PlanError> {
-        if let (Some(before), Some(now)) = (self.depth_range, plan.depth_range)
-            && before != now
-        {
-            let detail = "must be given for a turntable of depth, here or in the scene's camera: \
-                          without it every side has a range of its own";
-            return Err(PlanError::Query(vec![QueryFault::new("far", detail)]));
-        }
         self.depth_range = self.depth_range.or(plan.depth_range);
-        Ok(())
+        Ok(plan)
     }
 
     fn draw(&mut self, plans: &[Plan]) -> Result<Vec<Frame>, JobError> {
@@ -169,13 +191,14 @@ impl<'a> Making<'a> {
         let plans: Vec<Plan> =
             requests.iter().map(|request| self.plan(request)).collect::<Result<_, JobError>>()?;
         self.product.check_memory(self.scene, &requests[0], &plans, &self.engine.limits)?;
+        let description = description(&plans[0], &requests[0], outputs, self.depth_range)?;
+        self.tag.add_description(&description);
         let frames = self.draw(&plans)?;
         let mut archive = Zip::default();
         for (frame, output) in frames.iter().zip(outputs) {
             archive.add(&format!("{}.png", output.word()), &encode::png(frame));
         }
-        let camera = plan::camera(self.scene, &requests[0], self.size[0], self.size[1])?;
-        archive.add("frame.json", &encode::frame_json(&plans[0], &camera, outputs, self.depth_range));
+        archive.add("frame.json", &description);
         Ok(archive.finish())
     }
 

@@ -26,18 +26,20 @@ use crate::plan::{FrameRequest, Plan, PlanError};
 use crate::scene::Scene;
 use crate::settings::{Machine, Settings, Simd};
 use fearless_simd::Level;
-use product::FileTag;
 use shift::{Clock, Shift};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
+use tokio::sync::Semaphore;
 
 /// Draws frames, a few at a time, on one pool of threads. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     engine: Arc<Engine>,
     queue: Queue,
+    /// One permit for each tag that may be made at the same time.
+    tags: Arc<Semaphore>,
     deadline: Duration,
 }
 
@@ -70,6 +72,7 @@ impl Renderer {
         Ok(Self {
             engine: Arc::new(Engine::new(&settings.machine, settings.limits(), draw)?),
             queue: Queue::new(settings.renders.get(), usize::from(settings.queue)),
+            tags: Arc::new(Semaphore::new(settings.renders.get().min(Semaphore::MAX_PERMITS))),
             deadline: settings.frame_seconds,
         })
     }
@@ -128,22 +131,30 @@ impl Renderer {
     }
 
     /// The ETag that [`Renderer::render`] would answer with, without drawing and without a turn in
-    /// the queue.
+    /// the queue: it is made of outlines, which take little time and no memory. As many are made at a time
+    /// as frames are drawn, each within the deadline.
     ///
     /// # Errors
-    /// [`JobError::Plan`] and [`JobError::Unfit`] for a request that can't be met,
-    /// [`JobError::Panicked`].
+    /// [`JobError::Plan`] and [`JobError::Unfit`] for a request that can't be met, but for what only a whole
+    /// plan shows to be too large; [`JobError::Deadline`], [`JobError::Panicked`].
     pub async fn etag(
         &self,
         scene: Arc<Scene>,
         request: FrameRequest,
         product: impl Into<Product>,
     ) -> Result<String, JobError> {
+        let clock = Clock::start(self.deadline);
+        let turn =
+            clock.wait(Arc::clone(&self.tags).acquire_owned()).await?.map_err(|_| JobError::Closing)?;
+        let cancel = CancelOnDrop::default();
+        let flag = cancel.flag();
         let engine = Arc::clone(&self.engine);
         let product = product.into();
-        tokio::task::spawn_blocking(move || caught(|| engine.etag(&scene, &request, product)))
-            .await
-            .map_err(|_| JobError::Panicked)?
+        let job = tokio::task::spawn_blocking(move || {
+            let _turn = turn;
+            caught(|| engine.etag(&scene, &request, product, &flag))
+        });
+        clock.wait(job).await?.map_err(|_| JobError::Panicked)?
     }
 
     /// Runs `task`, which makes something that frames are drawn from, on threads that do nothing else: as many
@@ -214,13 +225,14 @@ impl Engine {
         draw::make(self, scene, request, &product.settled(request), self.work(cancel), shift)
     }
 
-    fn etag(&self, scene: &Arc<Scene>, request: &FrameRequest, product: Product) -> Result<String, JobError> {
-        let product = product.settled(request);
-        let mut tag = FileTag::new(&product);
-        for request in product.requests(scene, request, &self.limits)? {
-            tag.add(&self.plan(scene, &request)?);
-        }
-        Ok(tag.finish())
+    fn etag(
+        &self,
+        scene: &Arc<Scene>,
+        request: &FrameRequest,
+        product: Product,
+        cancel: &AtomicBool,
+    ) -> Result<String, JobError> {
+        draw::etag(self, scene, request, &product.settled(request), self.work(cancel))
     }
 
     fn pick(

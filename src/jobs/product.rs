@@ -5,9 +5,10 @@ use super::draw::milliseconds;
 use crate::encode::{Animation, Format};
 use crate::limits::{Limits, MAX_TURNTABLE_FRAMES};
 use crate::plan::request::Query;
-use crate::plan::{FrameRequest, Output, Plan, PlanError};
+use crate::plan::{FrameRequest, Output, Plan, PlanError, QueryFault};
 use crate::scene::Scene;
 use bytes::Bytes;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// What a client wants to have.
@@ -85,7 +86,7 @@ impl Product {
     /// [`JobError::Unfit`] and [`JobError::Plan`].
     pub(super) fn requests(
         &self,
-        scene: &Scene,
+        scene: &Arc<Scene>,
         request: &FrameRequest,
         limits: &Limits,
     ) -> Result<Vec<FrameRequest>, JobError> {
@@ -95,7 +96,9 @@ impl Product {
             Self::Turntable { frames, format } => {
                 format.check(request.output)?;
                 let side = |i: u32| request.turned(360.0 * f64::from(i) / f64::from(*frames));
-                Ok((0..*frames).map(side).collect())
+                let sides: Vec<_> = (0..*frames).map(side).collect();
+                check_depth_ranges(scene, &sides, limits)?;
+                Ok(sides)
             }
             Self::Archive { outputs } => Ok(outputs.iter().map(|output| showing(request, *output)).collect()),
         }
@@ -157,6 +160,20 @@ fn check_bytes(value: u64, limits: &Limits) -> Result<(), PlanError> {
     Err(PlanError::TooLarge { what, limit, value, setting: Some("RASTERD_MAX_FRAME_BYTES") })
 }
 
+/// A file has one range of depth, or its values could not be compared.
+fn check_depth_ranges(scene: &Arc<Scene>, sides: &[FrameRequest], limits: &Limits) -> Result<(), PlanError> {
+    let mut first = None;
+    for side in sides.iter().filter(|side| side.output == Output::Depth) {
+        let range = Plan::outline(scene, side, limits)?.depth_range;
+        if *first.get_or_insert(range) != range {
+            let detail = "must be given for a turntable of depth, here or in the scene's camera: \
+                          without it every side has a range of its own";
+            return Err(PlanError::Query(vec![QueryFault::new("far", detail)]));
+        }
+    }
+    Ok(())
+}
+
 /// The same frame with another output.
 fn showing(request: &FrameRequest, output: Output) -> FrameRequest {
     FrameRequest { output, ..request.clone() }
@@ -201,7 +218,8 @@ impl Rendered {
     }
 }
 
-/// The ETag of a file in the making: of its kind, and of the tags of its frames' plans.
+/// The ETag of a file in the making: of its kind, of the tags of its frames' plans, and of what describes
+/// them.
 #[derive(Debug)]
 pub(super) struct FileTag(blake3::Hasher);
 
@@ -216,6 +234,11 @@ impl FileTag {
     /// Takes in a frame.
     pub(super) fn add(&mut self, plan: &Plan) {
         self.0.update(plan.etag().as_bytes());
+    }
+
+    /// Takes in what lies beside the frames.
+    pub(super) fn add_description(&mut self, description: &[u8]) {
+        self.0.update(description);
     }
 
     /// In quotes.

@@ -170,6 +170,17 @@ async fn the_etag_needs_no_turn() {
     caller.abort();
 }
 
+#[tokio::test]
+async fn tags_are_made_a_few_at_a_time_and_have_a_deadline() {
+    let renderer = renderer(&settings(0, TICK), Box::new(|_, _| Ok(vec![frame()])));
+    let all = Arc::clone(&renderer.tags).acquire_owned().await.expect("never closed");
+    let tag = || renderer.etag(scene(), FrameRequest::default(), Format::Png);
+    assert!(matches!(tag().await, Err(JobError::Deadline(TICK))));
+    drop(all);
+    let patient = Renderer { deadline: PATIENCE, ..renderer.clone() };
+    patient.etag(scene(), FrameRequest::default(), Format::Png).await.expect("an ETag");
+}
+
 /// A turntable of so many frames.
 fn turn(frames: u32) -> Product {
     Product::Turntable { frames, format: Animation::Gif }
@@ -271,6 +282,47 @@ fn frames_that_wait_for_the_last_count_with_what_that_takes() {
         let refused = outcome(held + plan.bytes() - 1);
         assert!(matches!(refused, Err(JobError::Plan(PlanError::TooLarge { .. }))), "{product:?}");
     }
+}
+
+#[test]
+fn a_turn_of_depths_without_a_range_is_refused_before_a_side_is_drawn() {
+    let document = serde_json::json!({
+        "camera": { "position": [0, 0, 5] },
+        "meshes": { "plank": { "type": "box", "size": [1, 1, 4] } },
+        "instances": { "a": { "mesh": "plank" } },
+    });
+    let new = NewScene { document: Some(document), ..NewScene::default() };
+    let scene = Arc::new(new.compile(&Limits::default()).expect("a scene"));
+    let draw: Box<Draw> = Box::new(|_, _| panic!("nothing is to be drawn"));
+    let renderer = renderer(&settings(0, PATIENCE), draw);
+    let request = FrameRequest { output: Output::Depth, ..FrameRequest::default() };
+    let product = Product::Turntable { frames: 3, format: Animation::Apng };
+    let outcome = renderer.render_now(&scene, &request, product);
+    assert!(
+        matches!(&outcome, Err(JobError::Plan(PlanError::Query(faults))) if faults[0].parameter == "far"),
+        "{outcome:?}"
+    );
+}
+
+#[tokio::test]
+async fn archives_that_differ_in_their_description_alone_differ_in_their_tag() {
+    let scene = scene();
+    let draw: Box<Draw> = Box::new(|plans, _| Ok(plans.iter().map(|_| frame()).collect()));
+    let renderer = renderer(&settings(0, PATIENCE), draw);
+    let derived = FrameRequest { ortho_height: Some(4.0), near: Some(1.0), ..FrameRequest::default() };
+    let outline = Plan::outline(&scene, &derived, renderer.limits()).expect("an outline");
+    let given = FrameRequest { far: Some(outline.view.far), ..derived.clone() };
+    let same = Plan::outline(&scene, &given, renderer.limits()).expect("an outline");
+    assert_eq!(same.etag(), outline.etag());
+    let mut files = Vec::new();
+    for request in [derived, given] {
+        let product = Product::Archive { outputs: vec![Output::Color] };
+        let file = renderer.render_now(&scene, &request, product.clone()).expect("an archive");
+        let tag = renderer.etag(Arc::clone(&scene), request, product).await.expect("an ETag");
+        assert_eq!(file.etag, tag);
+        files.push(file);
+    }
+    assert!(files[0].bytes != files[1].bytes && files[0].etag != files[1].etag);
 }
 
 #[test]

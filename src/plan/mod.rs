@@ -58,6 +58,8 @@ pub struct Plan {
     pub post: PostChain,
     /// Distances that 0 and 65535 stand for in `output=depth`.
     pub depth_range: Option<[f64; 2]>,
+    /// What overrides the shading of its materials.
+    shading: Option<Shading>,
     /// Working memory that it will take.
     bytes: u64,
     /// That of its items among it.
@@ -101,6 +103,20 @@ impl Plan {
     /// # Errors
     /// [`PlanError`]: overrides that contradict the scene, or a frame over its limits.
     pub fn new(scene: &Arc<Scene>, request: &FrameRequest, limits: &Limits) -> Result<Self, PlanError> {
+        let mut plan = Self::outline(scene, request, limits)?;
+        plan.add_instances(limits)?;
+        if plan.draws.iter().any(|draw| draw.surface.lit) {
+            plan.add_lights(limits)?;
+        }
+        Ok(plan)
+    }
+
+    /// The plan without what follows from the scene: items, draws, lights and shadows. Its camera, its range
+    /// of depth and its entity tag are those of the whole, for a small part of the work.
+    ///
+    /// # Errors
+    /// As [`Plan::new`], but what its instances and lights would be too many for.
+    pub fn outline(scene: &Arc<Scene>, request: &FrameRequest, limits: &Limits) -> Result<Self, PlanError> {
         let width = request.width.unwrap_or(scene.render.width);
         let height = request.height.unwrap_or(scene.render.height);
         check_picture(width, height, limits)?;
@@ -110,7 +126,6 @@ impl Plan {
         let bounds = scene.bounds(t);
         let view = view::of_camera(&camera, bounds, width, height);
         let is_shaded = request.output.is_shaded();
-        let shading = request.shading.or(scene.render.shading);
         let mut plan = Self {
             scene: scene.clone(),
             t,
@@ -129,22 +144,19 @@ impl Plan {
                 PostChain::default()
             },
             depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
+            shading: request.shading.or(scene.render.shading),
             bytes: 0,
             geometry_bytes: 0,
         };
         plan.charge(u64::from(width) * u64::from(height) * request.output.pixel_bytes(), limits)?;
         let transparent = plan.background == Background::Transparent;
         plan.charge(plan.post.frame_bytes(width, height, transparent), limits)?;
-        plan.add_instances(shading, limits)?;
-        if plan.draws.iter().any(|draw| draw.surface.lit) {
-            plan.add_lights(limits)?;
-        }
         Ok(plan)
     }
 
     /// Adds every visible instance that reaches into the view, with its surfaces.
-    fn add_instances(&mut self, shading: Option<Shading>, limits: &Limits) -> Result<(), PlanError> {
-        let scene = self.scene.clone();
+    fn add_instances(&mut self, limits: &Limits) -> Result<(), PlanError> {
+        let (scene, shading) = (self.scene.clone(), self.shading);
         for (index, instance) in scene.visible() {
             let mesh = scene.mesh(instance);
             let mut placed = Item::new(&scene, instance, self.t, Vec::new());

@@ -149,4 +149,6 @@ async fn the_same_request_gives_the_same_bytes() {
     assert!(a.body == b.body && a.header("etag") == b.header("etag"));
     let fewer = one.get("/scenes/t/frame.zip?outputs=color").await;
     assert_ne!(fewer.header("etag"), a.header("etag"));
+    let known = [("if-none-match", a.header("etag"))];
+    assert_eq!(other.get_with(path, &known).await.status, 304);
 }
