@@ -83,7 +83,7 @@ pub(super) struct Turn {
 #[into_params(parameter_in = Query)]
 #[expect(dead_code, reason = "names and types for the description; `query::source` does the reading")]
 pub(super) struct SourceQuery {
-    /// A name of the gallery, in place of a body
+    /// A name of the gallery, in place of a body; `up` and `floor` are not taken then
     from: Option<String>,
     /// Which of the model's axes is up: `y` or `z`
     up: Option<String>,
@@ -201,7 +201,9 @@ fn add_errors(path: &str, method: &str, operation: &mut Value) {
     let of = |applies: bool, statuses: &'static [u16]| if applies { statuses } else { &[] };
     let statuses = [
         of(true, &[403, 422, 431, 500]),
-        of(path.contains('{'), &[400, 404]),
+        of(path.contains('{'), &[400]),
+        // What is put under a name need not be there yet.
+        of(path.contains('{') && (method, path) != ("put", "/scenes/{id}"), &[404]),
         of(has_body, &[400, 408, 413, 415, 422]),
         of(has_body && !draws, &[507]),
         of(conditional, &[412]),
@@ -243,6 +245,16 @@ mod tests {
     use super::*;
     use crate::plan::FrameRequest;
     use crate::plan::request::Query;
+
+    #[test]
+    fn a_scene_that_is_put_need_not_be_there() {
+        let answers = |method: &str| {
+            let mut operation = json!({});
+            add_errors("/scenes/{id}", method, &mut operation);
+            ["400", "404"].map(|status| operation["responses"][status].is_object())
+        };
+        assert_eq!((answers("put"), answers("patch")), ([true, false], [true, true]));
+    }
 
     #[test]
     fn the_frame_query_is_described_name_by_name() {

@@ -13,12 +13,21 @@ pub(super) fn narrow(operation: &mut Value) {
             parameter["schema"] = schema;
         }
     }
+    if takes_gallery(operation) {
+        operation["requestBody"]["required"] = json!(false);
+    }
     let contents = operation.pointer_mut("/requestBody/content").and_then(Value::as_object_mut);
     for (media_type, content) in contents.into_iter().flatten() {
         if let Some(schema) = of_body(media_type) {
             content["schema"] = schema;
         }
     }
+}
+
+/// Whether a name of the gallery may stand in place of the body.
+fn takes_gallery(operation: &Value) -> bool {
+    let parameters = operation.get("parameters").and_then(Value::as_array);
+    parameters.into_iter().flatten().any(|parameter| parameter["name"] == "from")
 }
 
 fn of_parameter(name: &str) -> Option<Value> {
@@ -102,6 +111,16 @@ mod tests {
     /// Whether one of the numbers is beyond f64.
     fn is_too_large(text: &str) -> bool {
         text.split(',').any(|part| part.trim().parse().is_ok_and(f64::is_infinite))
+    }
+
+    #[test]
+    fn a_body_may_be_left_out_where_the_gallery_stands_in_for_it() {
+        let narrowed = |parameter: &str| {
+            let mut operation = json!({ "parameters": [{ "name": parameter, "in": "query" }], "requestBody": { "required": true } });
+            narrow(&mut operation);
+            operation["requestBody"]["required"].clone()
+        };
+        assert_eq!((narrowed("from"), narrowed("up")), (json!(false), json!(true)));
     }
 
     #[test]
