@@ -215,6 +215,7 @@ mod tests {
                 });
                 for i in 0..LANES {
                     let exact = libm::atan2(f64::from(ys[i]), f64::from(xs[i]));
+                    assert!(!zs[i].is_nan(), "{} {}", ys[i], xs[i]);
                     worst = worst.max((f64::from(zs[i]) - exact).abs());
                 }
             }

@@ -1,5 +1,6 @@
 //! What a picture must show, computed in f64 from the formulas alone and by none of the library's code.
 
+use crate::measure::Worst;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
@@ -178,7 +179,7 @@ pub fn code(linear: f64) -> u8 {
 
 /// How far a pixel is from a linear colour: the largest difference of its channels, in codes.
 pub fn codes_apart(pixel: [u8; 4], linear: DVec3) -> f64 {
-    (0..3).map(|c| (f64::from(pixel[c]) - 255.0 * encode(linear[c])).abs()).fold(0.0, f64::max)
+    (0..3).map(|c| (f64::from(pixel[c]) - 255.0 * encode(linear[c])).abs()).collect::<Worst>().largest()
 }
 
 /// What a surface does with light.

@@ -83,7 +83,9 @@ mod tests {
                 for t in (-9..=9).map(|t| f64::from(t) * 0.1) {
                     let beyond = |p: &&[f32; 2]| f64::from(p[0]) * cos + f64::from(p[1]) * sin > t;
                     let found = f64::from(u32::try_from(points.iter().filter(beyond).count()).unwrap());
-                    worst = worst.max((found / f64::from(count) - share(t)).abs());
+                    let error = (found / f64::from(count) - share(t)).abs();
+                    assert!(!error.is_nan());
+                    worst = worst.max(error);
                 }
             }
             // Random points would be off by 1.5/√n somewhere.

@@ -1,8 +1,8 @@
 //! Texture coordinates and their derivatives at every ratio of distances.
 
-use super::interpolated::{U, corners, document, look, weights};
+use super::interpolated::{corners, document, look, weights};
 use crate::draw::{Picture, plan, scene};
-use crate::measure::at_most;
+use crate::measure::{U, Worst, at_most};
 use crate::random::Random;
 use rasterd::pipeline::geometry::setup::NOT_CLIPPED;
 use rasterd::plan::FrameRequest;
@@ -19,7 +19,7 @@ fn texture_coordinates_stay_within_sixteen_roundings_at_any_ratio_of_distances()
             let uvs: Vec<_> =
                 positions.iter().map(|_| [random.between(0.0, 1.0), random.between(0.0, 1.0)]).collect();
             let plan = plan(&scene(&document(positions, json!({ "uvs": uvs }))), &FrameRequest::default());
-            let (mut worst, mut outside) = (0.0f64, 0.0f64);
+            let (mut worst, mut outside) = (Worst::default(), Worst::default());
             let looked = look(&plan, &mut random, |t, point, lane, varyings| {
                 assert_eq!(t.clipped, NOT_CLIPPED);
                 let corner = t.corners().map(|c| 3 * t.source as usize + c);
@@ -31,15 +31,15 @@ fn texture_coordinates_stay_within_sixteen_roundings_at_any_ratio_of_distances()
                     let exact = (0..3).map(|i| share[i] * at[i]).sum::<f64>() / share.iter().sum::<f64>();
                     let largest = at.into_iter().fold(0.0, f64::max);
                     let least = at.into_iter().fold(1.0, f64::min);
-                    worst = worst.max((value - exact).abs() / largest / U);
-                    outside = outside.max((value - largest).max(least - value) / largest / U);
+                    worst.note((value - exact).abs() / largest / U);
+                    outside.note((value - largest).max(least - value) / largest / U);
                 }
             });
             assert!(looked > 500, "{looked} points");
             let case = format!("B21 w ratio {ratio:e}, {extent} px, {looked} points");
-            at_most(&case, "error of u in u·max|u|", worst, 16.0);
+            at_most(&case, "error of u in u·max|u|", worst.largest(), 16.0);
             // B12: an interpolated value stays between those of its corners.
-            at_most(&case, "excess over the corners in u·max|u|", outside.max(0.0), 4.0);
+            at_most(&case, "excess over the corners in u·max|u|", outside.largest(), 4.0);
         }
     }
 }
@@ -55,7 +55,7 @@ fn derivatives_of_texture_coordinates_give_the_level_to_a_256th() {
             let uvs: Vec<_> =
                 positions.iter().map(|_| [random.between(0.0, turns), random.between(0.0, turns)]).collect();
             let plan = plan(&scene(&document(positions, json!({ "uvs": uvs }))), &FrameRequest::default());
-            let mut worst = 0.0f64;
+            let mut worst = Worst::default();
             let looked = look(&plan, &mut random, |t, point, lane, varyings| {
                 let corner = t.corners().map(|c| 3 * t.source as usize + c);
                 let e = weights(t, point);
@@ -83,10 +83,10 @@ fn derivatives_of_texture_coordinates_give_the_level_to_a_256th() {
                     [length(along), length(drawn)]
                 };
                 let ([x, drawn_x], [y, drawn_y]) = (squared(0), squared(1));
-                worst = worst.max((drawn_x.max(drawn_y) / x.max(y)).log2().abs() / 2.0);
+                worst.note((drawn_x.max(drawn_y) / x.max(y)).log2().abs() / 2.0);
             });
             let case = format!("B24 w ratio {ratio:e}, {extent} px, {turns:e} turns, {looked} points");
-            at_most(&case, "error of the level", worst, 1.0 / 256.0);
+            at_most(&case, "error of the level", worst.largest(), 1.0 / 256.0);
         }
     }
 }
@@ -108,7 +108,7 @@ fn b22_coordinates_around_a_million_read_the_texel_that_they_name() {
             let mut document = document(positions, json!({ "uvs": uvs }));
             document["textures"]["t"]["wrap"] = json!(wrap);
             let plan = plan(&scene(&document), &FrameRequest::default());
-            let mut worst = 0.0f64;
+            let mut worst = Worst::default();
             let looked = look(&plan, &mut random, |t, point, lane, varyings| {
                 let corner = t.corners().map(|c| 3 * t.source as usize + c);
                 let e = weights(t, point);
@@ -116,12 +116,12 @@ fn b22_coordinates_around_a_million_read_the_texel_that_they_name() {
                 for (axis, value) in varyings.texture.uv.iter().enumerate() {
                     let at = corner.map(|c| uvs[c][axis]);
                     let exact = (0..3).map(|i| share[i] * at[i]).sum::<f64>() / share.iter().sum::<f64>();
-                    worst = worst.max(apart(f64::from(value[lane]), exact).abs());
+                    worst.note(apart(f64::from(value[lane]), exact).abs());
                 }
             });
             assert!(looked > 500, "{looked} points");
             let case = format!("B22 {offset:e}, {wrap}, span {span}");
-            at_most(&case, "texels of 1024", worst * 1024.0, 1.0 / 256.0);
+            at_most(&case, "texels of 1024", worst.largest() * 1024.0, 1.0 / 256.0);
         }
     }
 }

@@ -2,7 +2,7 @@
 //! (B13 – B15).
 
 use super::stage::*;
-use crate::measure::{U, at_most, none_of};
+use crate::measure::{U, Worst, at_most, none_of};
 use crate::random::Random;
 use glam::DVec3;
 use rasterd::math::View;
@@ -23,44 +23,42 @@ fn exact_depth(t: &Triangle, depth: [f64; 3], p: [i32; 2]) -> f64 {
     (0..3).map(|i| weights[i] as f64 * depth[i]).sum::<f64>() / area as f64
 }
 
-/// The largest relative error of the depth of any sample of a triangle, and how many it has.
-fn worst_error(view: &View, screen: [[f64; 2]; 3], w: [f64; 3]) -> (f64, usize) {
+/// Notes the relative error of the depth of every sample of a triangle, in u; and how many it has.
+fn note_errors(worst: &mut Worst, view: &View, screen: [[f64; 2]; 3], w: [f64; 3]) -> usize {
     let corners = [0, 1, 2].map(|i| at_distance(view, screen[i], w[i]));
     let bins = bins(two_sided(soup(&[corners])), view, 1);
     assert_eq!(bins.counts.clipped, 0);
     let Some(t) = triangles(&bins).next() else {
-        return (0.0, 0);
+        return 0;
     };
     // The distances after the way through the vertex stage are those of the corners: the camera's
     // axes are those of the world.
     let depth = t.corners().map(|corner| view.near / w[corner]);
     let seen = visible(&bins, 1);
-    let (mut worst, mut covered) = (0.0f64, 0);
+    let mut covered = 0;
     for (i, (&id, &drawn)) in seen.id.iter().zip(&seen.depth).enumerate() {
         if id != 0 {
             let (x, y) = (i as u32 % view.width, i as u32 / view.width);
             let p =
                 [(x, view.width), (y, view.height)].map(|(c, n)| (c * 256 + 128) as i32 - (n * 128) as i32);
             let exact = exact_depth(t, depth, p);
-            worst = worst.max((f64::from(drawn) - exact).abs() / exact);
+            worst.note((f64::from(drawn) - exact).abs() / exact / U);
             covered += 1;
         }
     }
-    (worst, covered)
+    covered
 }
 
 fn claim(case: &str, seed: u64, mut make: impl FnMut(&mut Random, &View) -> ([[f64; 2]; 3], [f64; 3])) {
     let mut rng = Random::new(case, seed);
-    let (mut worst, mut covered) = (0.0f64, 0);
+    let (mut worst, mut covered) = (Worst::default(), 0);
     for _ in 0..300 {
         let view = perspective_view(128, 96, 0.5, 0.25);
         let (screen, w) = make(&mut rng, &view);
-        let (error, count) = worst_error(&view, screen, w);
-        worst = worst.max(error);
-        covered += count;
+        covered += note_errors(&mut worst, &view, screen, w);
     }
     assert!(covered > 2000, "{covered} samples are too few to show anything");
-    at_most(case, "relative error of the depth in u", worst / U, 8.0);
+    at_most(case, "relative error of the depth in u", worst.largest(), 8.0);
 }
 
 fn anywhere(rng: &mut Random, reach: f64) -> [f64; 2] {

@@ -15,9 +15,6 @@ use rasterd::pipeline::shader::{Outputs, PixelShader, Visible};
 use rasterd::plan::Plan;
 use serde_json::{Value, json};
 
-/// Unit roundoff of f32.
-pub const U: f64 = 5.960_464_477_539_063e-8;
-
 /// Points a triangle is looked at.
 const POINTS: usize = 8;
 

@@ -1,8 +1,8 @@
 //! Normals under every scale, of every length, and where they cancel.
 
-use super::interpolated::{U, bins, corners, document, look};
+use super::interpolated::{bins, corners, document, look};
 use crate::draw::{plan, scene};
-use crate::measure::at_most;
+use crate::measure::{U, Worst, at_most};
 use crate::random::Random;
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
@@ -44,18 +44,18 @@ fn normals_are_those_of_the_transformed_triangle_under_every_scale() {
         let plan = plan(&scene(&lit(scale.into(), rotation)), &FrameRequest::default());
         let item = &plan.items[0];
         let eye = plan.view.eye;
-        let mut worst = 0.0f64;
+        let mut worst = Worst::default();
         let looked = look(&plan, &mut Random(1), |t, _, lane, varyings| {
             let corners = item.mesh.triangles[t.source as usize].map(|v| item.linear * item.mesh.position(v));
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
             let towards = if normal.dot(eye - item.origin - corners[0]) < 0.0 { -normal } else { normal };
             let drawn = varyings.normal.map(|axis| f64::from(axis[lane]));
             assert!(drawn.iter().all(|c| c.is_finite()));
-            worst = worst.max(DVec3::from_array(drawn).cross(towards).length() / U);
+            worst.note(DVec3::from_array(drawn).cross(towards).length() / U);
             assert!(DVec3::from_array(drawn).dot(towards) > 0.0, "scale {scale:?}: turned away");
         });
         assert!(looked > 300, "scale {scale:?}: {looked} points");
-        at_most(&format!("B25 scale {scale:?}"), "angle in u", worst, 4.0);
+        at_most(&format!("B25 scale {scale:?}"), "angle in u", worst.largest(), 4.0);
     }
 }
 
@@ -84,16 +84,16 @@ fn geometric_normal(plan: &Plan) -> DVec3 {
 
 /// Largest excess of the length of interpolated normals over 1, in u.
 fn worst_length(plan: &Plan) -> f64 {
-    let mut worst = 0.0f64;
+    let mut worst = Worst::default();
     let looked = (0..50).map(|seed| {
         look(plan, &mut Random(seed), |_, _, lane, varyings| {
             let n = DVec3::from_array(varyings.normal.map(|axis| f64::from(axis[lane])));
             assert!(n.is_finite(), "{n}");
-            worst = worst.max((n.length() - 1.0).abs() / U);
+            worst.note((n.length() - 1.0).abs() / U);
         })
     });
     assert!(looked.sum::<usize>() > 100);
-    worst
+    worst.largest()
 }
 
 /// B26.
@@ -107,13 +107,18 @@ fn normals_of_any_length_become_unit_vectors_and_zero_the_geometric_one() {
         }));
         let stored = plan.items[0].mesh.normals.iter().map(|n| (n.as_dvec3().length() - 1.0).abs() / U);
         let case = format!("B26 normals of length {length:e}");
-        at_most(&case, "stored length − 1 in u", stored.fold(0.0, f64::max), 2.0);
+        at_most(&case, "stored length − 1 in u", stored.collect::<Worst>().largest(), 2.0);
         at_most(&case, "interpolated length − 1 in u", worst_length(&plan), 2.0);
     }
     let plan = with_normals([DVec3::ZERO; 3]);
     let geometric = geometric_normal(&plan);
     let worst = plan.items[0].mesh.normals.iter().map(|n| n.as_dvec3().cross(geometric).length() / U);
-    at_most("B26 normals of length 0", "angle to the geometric normal in u", worst.fold(0.0, f64::max), 2.0);
+    at_most(
+        "B26 normals of length 0",
+        "angle to the geometric normal in u",
+        worst.collect::<Worst>().largest(),
+        2.0,
+    );
 }
 
 /// B27.
@@ -149,12 +154,12 @@ fn normals_that_cancel_give_way_to_the_geometric_one() {
 #[test]
 fn the_orthonormal_basis_holds_for_every_direction() {
     let mut random = Random(0xb28);
-    let mut worst = 0.0f64;
+    let mut worst = Worst::default();
     let mut check = |n: DVec3| {
         let (a, b) = orthonormal_basis(n);
         let errors =
             [a.dot(b), a.dot(n), b.dot(n), a.length() - 1.0, b.length() - 1.0, (a.cross(b) - n).length()];
-        worst = errors.into_iter().fold(worst, |worst, e| worst.max(e.abs()));
+        errors.into_iter().for_each(|e| worst.note(e.abs()));
     };
     for _ in 0..200_000 {
         check(random.direction());
@@ -170,9 +175,9 @@ fn the_orthonormal_basis_holds_for_every_direction() {
     }
     check(DVec3::new(0.0, 0.0, -1.0));
     check(DVec3::new(-0.0, 1.0, -0.0));
-    at_most("B28 basis", "error in u", worst / U, 4.0);
+    at_most("B28 basis", "error in u", worst.largest() / U, 4.0);
     // It is made in f64, whose own roundoff is 2⁻⁵³; a unit vector's square is off by 4 of those, which
     // the basis inherits, and its own steps add as many.
     let roundoff = f64::EPSILON / 2.0;
-    at_most("B28 basis", "error in roundings of f64", worst / roundoff, 8.0);
+    at_most("B28 basis", "error in roundings of f64", worst.largest() / roundoff, 8.0);
 }

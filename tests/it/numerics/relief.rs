@@ -1,7 +1,7 @@
 //! Tangent frames for every direction, and maps that change nothing or are steep beyond all reason.
 
 use crate::draw::{Picture, file, frame, plan, png, scene_with};
-use crate::measure::{U, at_most, none_of};
+use crate::measure::{U, Worst, at_most, none_of};
 use crate::random::Random;
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
@@ -81,7 +81,7 @@ fn places(random: &mut Random) -> Vec<Place> {
 fn b28_tangent_frames_are_orthonormal_and_keep_their_handedness_for_all_directions() {
     let mut random = Random::new("B28", 0xb28);
     let (to_u, to_v) = (everywhere([255, 128, 128]), everywhere([128, 255, 128]));
-    let (mut worst, mut wrong, mut handed) = (0.0f64, 0, 0);
+    let (mut worst, mut wrong, mut handed) = (Worst::default(), 0, 0);
     for _ in 0..4000 {
         let places = places(&mut random);
         let at = Varyings::default();
@@ -89,7 +89,7 @@ fn b28_tangent_frames_are_orthonormal_and_keep_their_handedness_for_all_directio
         for (place, (t, b)) in places.iter().zip(tangents.into_iter().zip(bitangents)) {
             let [n, along_u, along_v] = place.map(|v| v.as_dvec3());
             let errors = [t.dot(n), b.dot(n), t.dot(b), t.length() - 1.0, b.length() - 1.0];
-            worst = errors.into_iter().fold(worst, |worst, e| worst.max(e.abs() / U));
+            errors.into_iter().for_each(|e| worst.note(e.abs() / U));
             // A degree off the normal, u has a direction; handedness is that of the texture.
             let sine = (along_u - n * n.dot(along_u)).length();
             if sine > 0.02 {
@@ -100,7 +100,7 @@ fn b28_tangent_frames_are_orthonormal_and_keep_their_handedness_for_all_directio
             }
         }
     }
-    at_most("B28 tangent frames", "off orthonormal in u", worst, 4.0);
+    at_most("B28 tangent frames", "off orthonormal in u", worst.largest(), 4.0);
     none_of("B28 tangent frames", "turned the wrong way", wrong, handed);
 }
 
@@ -162,7 +162,7 @@ fn b29_heights_of_any_scale_leave_the_normal_finite_and_on_its_side() {
             normal_map: None,
             heights: Some(Heights { map: map.clone(), scale }),
         };
-        let (mut least, mut longest, mut seen) = (1.0f64, 0.0f64, 0);
+        let (mut short, mut longest, mut seen) = (Worst::default(), Worst::default(), 0);
         for _ in 0..400 {
             let places = places(&mut random);
             let mut any = |from: f64, to: f64| std::array::from_fn(|_| random.magnitude(from, to) as f32);
@@ -176,17 +176,17 @@ fn b29_heights_of_any_scale_leave_the_normal_finite_and_on_its_side() {
             };
             for (place, normal) in places.iter().zip(tilted(&relief(scale), &places, &varyings)) {
                 assert!(normal.is_finite(), "{place:?}");
-                longest = longest.max((normal.length() - 1.0).abs() / U);
-                least = least.min(normal.dot(place[0].as_dvec3()));
+                longest.note((normal.length() - 1.0).abs() / U);
+                short.note(1e-4 - normal.dot(place[0].as_dvec3()));
                 seen += usize::from(normal.as_vec3() != place[0]);
             }
         }
         assert!(seen > 0, "nothing was tilted");
         let case = format!("B29 scale {scale:e}");
         // Three roundings in the square, halved by the root, one of the root and one of the quotient.
-        at_most(&case, "length − 1 in u", longest, 3.5);
+        at_most(&case, "length − 1 in u", longest.largest(), 3.5);
         // The steepest slope is 10⁴: the cosine is 10⁻⁴, to 0.2 % and the rounding of a unit vector.
-        at_most(&case, "10⁻⁴ less the cosine to the normal", 1e-4 - least, 1e-6);
+        at_most(&case, "10⁻⁴ less the cosine to the normal", short.largest(), 1e-6);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::oracle::coverage;
 use super::stage::*;
-use crate::measure::{U, at_most};
+use crate::measure::{U, Worst, at_most};
 use crate::random::Random;
 use glam::{DVec3, Vec3};
 use rasterd::math::View;
@@ -112,7 +112,7 @@ fn b11_masks_are_exact_and_edges_as_smooth_as_the_pattern_allows() {
 
 /// Checks every fragment of a frame: each interpolated colour lies between those of its triangle's
 /// corners. Returns the largest excess in u, relative to the largest colour of the triangle.
-fn worst_excess(item: &Item, view: &View, samples: u32) -> (f64, usize) {
+fn worst_excess(item: &Item, view: &View, samples: u32) -> (Worst, usize) {
     let surface = Surface {
         shading: Shading::VertexColor,
         diffuse: Vec3::ONE,
@@ -134,7 +134,7 @@ fn worst_excess(item: &Item, view: &View, samples: u32) -> (f64, usize) {
     let bins = bins(item.clone(), view, samples);
     let (mut scratch, mut fragments) = (Scratch::default(), Fragments::default());
     let side = 1 << bins.grid.tile_shift;
-    let (mut worst, mut checked) = (0.0f64, 0);
+    let (mut worst, mut checked) = (Worst::default(), 0);
     for tile in 0..bins.grid.tiles() {
         let place = [tile % bins.grid.columns, tile / bins.grid.columns];
         let region = Region::of_tile(&bins.grid, place[0], place[1]);
@@ -161,7 +161,7 @@ fn worst_excess(item: &Item, view: &View, samples: u32) -> (f64, usize) {
                     let value = f64::from(color[i]);
                     assert!(value.is_finite());
                     let excess = (low - value).max(value - high).max(0.0);
-                    worst = worst.max(excess / high / U);
+                    worst.note(excess / high / U);
                     checked += 1;
                 }
             }
@@ -196,6 +196,6 @@ fn b12_attributes_stay_between_those_of_the_corners() {
             Some((0..900).map(|i| if i / 3 % 5 == 0 { Vec3::splat(0.7) } else { color(&mut rng) }).collect());
         let (worst, checked) = worst_excess(&two_sided(soup), &view, samples);
         assert!(checked > 30_000, "{checked} values are too few to show anything");
-        at_most(&format!("B12 {samples} samples"), "beyond the corners' values in u", worst, 4.0);
+        at_most(&format!("B12 {samples} samples"), "beyond the corners' values in u", worst.largest(), 4.0);
     }
 }

@@ -1,7 +1,7 @@
 //! Textures of odd sizes, and coordinates on borders and beyond all reason.
 
 use crate::draw::{file, png};
-use crate::measure::at_most;
+use crate::measure::{Worst, at_most};
 use fearless_simd::Level;
 use rasterd::limits::Limits;
 use rasterd::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
@@ -66,7 +66,10 @@ fn a_texture_of_one_texel_is_that_texel_everywhere() {
             for wrap in WRAPS {
                 let texture = Texture::new(image.clone(), color_space, filter, [wrap; 2]);
                 let expected = sampled(Level::new(), &texture, 0.5, 0.5, 0.0);
-                let off = (0..4).map(|c| (f64::from(expected[c]) / exact[c] - 1.0).abs()).fold(0.0, f64::max);
+                let off = (0..4)
+                    .map(|c| (f64::from(expected[c]) / exact[c] - 1.0).abs())
+                    .collect::<Worst>()
+                    .largest();
                 // Decoding is rounded once.
                 at_most(&format!("B23 1×1 {filter:?} {wrap:?}"), "relative error", off, 6e-8);
                 for u in coordinates() {
@@ -149,7 +152,7 @@ fn mips_of_every_size_keep_the_mean() {
         let image = image(width, height);
         let texture = Texture::new(image.clone(), ColorSpace::Linear, Filter::Trilinear, [Wrap::Repeat; 2]);
         let count = f64::from(width) * f64::from(height);
-        let (mut side, mut worst) = ([width, height], 0.0f64);
+        let (mut side, mut worst) = ([width, height], Worst::default());
         for level in texture.mips.iter() {
             side = side.map(|n| (n / 2).max(1));
             assert_eq!([level.width, level.height], side);
@@ -157,14 +160,14 @@ fn mips_of_every_size_keep_the_mean() {
                 let mean = image.texels.iter().map(|t| f64::from(t[c])).sum::<f64>() / count / 255.0;
                 let size = level.texels.len() as f64;
                 let here = level.texels.iter().map(|t| f64::from(t[c])).sum::<f64>() / size / 65535.0;
-                worst = worst.max((here - mean).abs());
+                worst.note((here - mean).abs());
             }
         }
         assert_eq!(side, [1, 1]);
         // 2u for each of at most 14 levels, and half a code of 16 bits once: a level is made from the
         // unrounded one above.
         let bound = 14.0 * 2.0 * 6e-8 + 0.5 / 65535.0;
-        at_most(&format!("B23 mips of {width}×{height}"), "shift of the mean", worst, bound);
+        at_most(&format!("B23 mips of {width}×{height}"), "shift of the mean", worst.largest(), bound);
     }
 }
 

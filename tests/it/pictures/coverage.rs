@@ -2,7 +2,7 @@
 
 use crate::closed_form::{Camera, Ray, area_in_pixel, decode, hit_plane};
 use crate::draw::{Picture, frame, samples, scene};
-use crate::measure::{at_most, none_of};
+use crate::measure::{Worst, at_most, none_of};
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
@@ -123,11 +123,11 @@ fn alpha_is_the_covered_share_and_colour_is_straight() {
     document["environment"]["background"] = json!({ "type": "transparent" });
     document["materials"]["white"]["diffuse"] = json!("#c86432");
     let picture = Picture::of(&document);
-    let (mut sum, mut edges, mut largest, mut tinted) = (0.0, 0.0, 0.0f64, 0);
+    let (mut sum, mut edges, mut largest, mut tinted) = (0.0, 0.0, Worst::default(), 0);
     for (x, y, [r, g, b, a]) in picture.iter() {
         let (area, alpha) = (area_in_pixel(&polygon, x, y), f64::from(a) / 255.0);
         tinted += usize::from([r, g, b] != if a == 0 { [0; 3] } else { [0xc8, 0x64, 0x32] });
-        largest = largest.max((alpha - area).abs());
+        largest.note((alpha - area).abs());
         if area > 1e-9 && area < 1.0 - 1e-9 {
             edges += 1.0;
             sum += (alpha - area).powi(2);
@@ -136,5 +136,5 @@ fn alpha_is_the_covered_share_and_colour_is_straight() {
     none_of("transparent background", "pixels whose colour is not straight", tinted, picture.pixels.len());
     at_most("transparent background", "RMSE of alpha", f64::sqrt(sum / edges), 0.06);
     // The largest error of the pattern is 0.17; half a code more for rounding.
-    at_most("transparent background", "largest error of alpha", largest, 0.17 + 0.5 / 255.0);
+    at_most("transparent background", "largest error of alpha", largest.largest(), 0.17 + 0.5 / 255.0);
 }

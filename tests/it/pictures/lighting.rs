@@ -4,7 +4,7 @@ use crate::closed_form::{
     Camera, Incoming, Lens, Ray, Surface, blinn_phong, codes_apart, hit_plane, hit_sphere,
 };
 use crate::draw::{Picture, frame, output, scene};
-use crate::measure::at_most;
+use crate::measure::{Worst, at_most};
 use glam::DVec3;
 use rasterd::plan::Output;
 use serde_json::{Value, json};
@@ -93,7 +93,7 @@ fn compare(
     expected: impl Fn(DVec3, DVec3, DVec3) -> DVec3,
 ) {
     let picture = Picture::of(document);
-    let (mut worst, mut checked) = (0.0f64, 0);
+    let (mut worst, mut checked) = (Worst::default(), 0);
     for (x, y, pixel) in picture.iter() {
         let known = camera.steady(x, y, 0.02, |ray| hit(ray).is_some()) == Some(true);
         let ray = camera.centre(x, y);
@@ -103,10 +103,10 @@ fn compare(
         let viewer = -ray.direction.normalize();
         let normal = if normal.dot(viewer) < 0.0 { -normal } else { normal };
         checked += 1;
-        worst = worst.max(codes_apart(pixel, expected(position, normal, viewer)));
+        worst.note(codes_apart(pixel, expected(position, normal, viewer)));
     }
     assert!(checked > 1000, "{case}: only {checked} pixels were looked at");
-    at_most(case, &format!("largest difference in codes of {checked}"), worst, BOUND);
+    at_most(case, &format!("largest difference in codes of {checked}"), worst.largest(), BOUND);
 }
 
 fn lamp_at(p: DVec3) -> Incoming {
@@ -287,17 +287,17 @@ fn output_normal_is_the_world_normal() {
     let camera = cameras()[0];
     let document = document(&camera, sphere_mesh(), json!({}));
     let picture = Picture::new(frame(&scene(&document), &output(Output::Normal)));
-    let (mut worst, mut checked) = (0.0f64, 0);
+    let (mut worst, mut checked) = (Worst::default(), 0);
     for (x, y, pixel) in picture.iter() {
         let Some((_, normal)) = sphere(camera.centre(x, y)) else {
             continue;
         };
         checked += 1;
         for c in 0..3 {
-            worst = worst.max((f64::from(pixel[c]) - 255.0 * (normal[c] / 2.0 + 0.5)).abs());
+            worst.note((f64::from(pixel[c]) - 255.0 * (normal[c] / 2.0 + 0.5)).abs());
         }
     }
     assert!(checked > 1000);
     // Half a code of rounding; the facets' depth shifts the point that is seen.
-    at_most("output=normal, sphere", "largest difference in codes", worst, 0.6);
+    at_most("output=normal, sphere", "largest difference in codes", worst.largest(), 0.6);
 }

@@ -2,7 +2,7 @@
 
 use crate::closed_form::{Camera, Lens, Ray, hit_box, hit_plane, hit_sphere};
 use crate::draw::{Picture, frame, output, pick, plan, scene, values, work};
-use crate::measure::{at_most, none_of};
+use crate::measure::{Worst, at_most, none_of};
 use glam::DVec3;
 use rasterd::pipeline;
 use rasterd::plan::Output;
@@ -91,7 +91,7 @@ fn assert_depths(case: &str, camera: &Camera, document: &Value, near: f64, far: 
     let range = frame.depth_range.expect("a depth picture names its range");
     at_most(case, "range", (range[0] - near).abs().max((range[1] / far - 1.0).abs()), 1e-12);
     let depths = values(frame);
-    let (mut worst, mut checked) = (0.0f64, 0);
+    let (mut worst, mut checked) = (Worst::default(), 0);
     for (x, y, hit) in certain(camera) {
         // Where the ball is seen at a grazing angle its facets lie visibly deeper.
         let ray = camera.centre(x, y);
@@ -103,11 +103,11 @@ fn assert_depths(case: &str, camera: &Camera, document: &Value, near: f64, far: 
             continue;
         }
         let share = hit.map_or(1.0, |(_, z)| ((z - near) / (far - near)).clamp(0.0, 1.0));
-        worst = worst.max((f64::from(depths[(y * camera.width + x) as usize]) - 65535.0 * share).abs());
+        worst.note((f64::from(depths[(y * camera.width + x) as usize]) - 65535.0 * share).abs());
         checked += 1;
     }
     assert!(checked > 5000);
-    at_most(case, "largest difference in codes", worst, 4.0);
+    at_most(case, "largest difference in codes", worst.largest(), 4.0);
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn pick_agrees_with_instance_and_depth_and_knows_the_position() {
         let scene = scene(&document);
         let ids = values(frame(&scene, &output(Output::Instance)));
         let depths = values(frame(&scene, &output(Output::Depth)));
-        let (mut worst, mut off, mut hits) = (0.0f64, 0.0f64, 0);
+        let (mut worst, mut off, mut hits) = (Worst::default(), Worst::default(), 0);
         for (x, y) in camera.pixels().filter(|(x, y)| x % 9 == 4 && y % 7 == 3) {
             let at = (y * camera.width + x) as usize;
             let Some(hit) = pick(&scene, x, y) else {
@@ -176,15 +176,15 @@ fn pick_agrees_with_instance_and_depth_and_knows_the_position() {
             assert_eq!(f64::from(depths[at]), code, "({x}, {y})");
             // A centre on a line of sight is where its instance is.
             let p = camera.centre(x, y).at(hit.depth);
-            worst = worst.max((hit.position - p).length());
+            worst.note((hit.position - p).length());
             if hit.instance == 2 {
-                off = off.max(hit.position.y.abs());
+                off.note(hit.position.y.abs());
             }
         }
         assert!(hits > 50);
-        at_most(&format!("pick, {name}"), "position off the line of sight", worst, 1e-9);
+        at_most(&format!("pick, {name}"), "position off the line of sight", worst.largest(), 1e-9);
         // A sub-pixel is 1.5·10⁻⁴ units at this distance, foreshortened on the floor.
-        at_most(&format!("pick, {name}"), "height over the floor", off, 3e-4);
+        at_most(&format!("pick, {name}"), "height over the floor", off.largest(), 3e-4);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::closed_form::encode;
 use crate::draw::{Picture, frame, output, plan, pool, samples, scene, work_of};
+use crate::measure::Worst;
 use crate::numerics::determinism::levels;
 use fearless_simd::Level;
 use rasterd::limits::Limits;
@@ -53,7 +54,7 @@ fn codes_off(document: &Value, f: impl Fn([f64; 3], f64, f64) -> [f64; 3]) -> f6
         let off = |c: usize| (255.0 * encode(expected[c].clamp(0.0, 1.0)) - f64::from(code[c])).abs();
         off(0).max(off(1)).max(off(2))
     });
-    off.fold(0.0, f64::max)
+    off.collect::<Worst>().largest()
 }
 
 fn aces(x: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use crate::closed_form::{Camera, EIGHT, Ray, hit_plane, hit_sphere};
 use crate::draw::{Picture, file, frame, output, png, scene_with};
-use crate::measure::at_most;
+use crate::measure::{Worst, at_most};
 use glam::{DMat3, DVec2, DVec3};
 use rasterd::plan::{FrameRequest, Output};
 use rasterd::scene::Files;
@@ -96,7 +96,7 @@ fn compare(
     let picture = Picture::new(frame(&scene_with(drawn.0, drawn.1), &output(Output::Normal)));
     let inverse = linear.inverse();
     let in_model = |ray: Ray| Ray { origin: inverse * ray.origin, direction: inverse * ray.direction };
-    let (mut worst, mut checked) = (0.0f64, 0);
+    let (mut worst, mut checked) = (Worst::default(), 0);
     for (x, y, pixel) in picture.iter() {
         let around = EIGHT.iter().all(|[dx, dy]| {
             hit(in_model(camera.ray(f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy))).is_some()
@@ -107,12 +107,12 @@ fn compare(
         let seen_from = ray.origin - linear * place;
         let normal = expected(&point) * point.normal.dot(seen_from).signum();
         for c in 0..3 {
-            worst = worst.max((f64::from(pixel[c]) - 255.0 * (normal[c] / 2.0 + 0.5)).abs());
+            worst.note((f64::from(pixel[c]) - 255.0 * (normal[c] / 2.0 + 0.5)).abs());
         }
         checked += 1;
     }
     assert!(checked > 500, "{case}: only {checked} pixels were looked at");
-    at_most(case, &format!("largest difference in codes of {checked}"), worst, bound);
+    at_most(case, &format!("largest difference in codes of {checked}"), worst.largest(), bound);
 }
 
 /// The floor between ±1, well inside its texture.

@@ -3,7 +3,7 @@
 use super::sampler::{Reference, Wrap};
 use crate::closed_form::{Camera, Ray, code, codes_apart, decode, encode, hit_plane};
 use crate::draw::{Picture, file, frame, png, scene_with};
-use crate::measure::{at_most, none_of};
+use crate::measure::{Worst, at_most, none_of};
 use glam::{DVec2, DVec3};
 use rasterd::plan::FrameRequest;
 use rasterd::scene::Files;
@@ -92,7 +92,7 @@ fn a_floor_to_the_horizon_is_right_near_the_eye_and_its_linear_mean_far_away() {
     let (size, repeat) = (2e5, 1e5);
     let camera = Camera::perspective([0.0, 1.0, 0.0], [0.3, 0.8, -1.0], 60.0, 160, 120);
     let picture = Picture::of(&checkered(&camera, size, repeat, "trilinear"));
-    let (mut wrong, mut near, mut worst, mut far) = (0, 0, 0.0f64, 0);
+    let (mut wrong, mut near, mut worst, mut far) = (0, 0, Worst::default(), 0);
     for (x, y, pixel) in picture.iter() {
         let Some(uv) = floor_uv(camera.centre(x, y), size, repeat) else {
             continue;
@@ -105,7 +105,7 @@ fn a_floor_to_the_horizon_is_right_near_the_eye_and_its_linear_mean_far_away() {
         let texels = 1024.0 * step(0.5, 0.0).max(step(0.0, 0.5)) * 2.0;
         if texels > 4.0 * 1024.0 {
             far += 1;
-            worst = worst.max((f64::from(pixel[0]) - 255.0 * encode(0.5)).abs());
+            worst.note((f64::from(pixel[0]) - 255.0 * encode(0.5)).abs());
         }
         // Two texels of its level and a pixel away from a line, filtering sees one colour.
         let reach = 2.0 * step(1.0, 0.0).max(step(0.0, 1.0)) + 2.0 / 1024.0;
@@ -118,7 +118,7 @@ fn a_floor_to_the_horizon_is_right_near_the_eye_and_its_linear_mean_far_away() {
     }
     none_of("B24 floor to the horizon, near", "wrong pixels", wrong, near);
     assert!(far > 500);
-    at_most("B24 floor to the horizon, far", "difference to the linear mean in codes", worst, 1.0);
+    at_most("B24 floor to the horizon, far", "difference to the linear mean in codes", worst.largest(), 1.0);
 }
 
 /// A picture of 64 × 64 pixels that shows texture coordinates from `from` to `to`.
@@ -160,7 +160,7 @@ fn motley(x: u32, y: u32) -> [u8; 4] {
 /// Largest difference between a chart and a reference, in codes.
 fn worst(picture: &Picture, from: DVec2, to: DVec2, expected: impl Fn(DVec2) -> DVec3) -> f64 {
     let apart = |(x, y, pixel): (u32, u32, [u8; 4])| codes_apart(pixel, expected(chart_uv(from, to, x, y)));
-    picture.iter().map(apart).fold(0.0, f64::max)
+    picture.iter().map(apart).collect::<Worst>().largest()
 }
 
 #[test]

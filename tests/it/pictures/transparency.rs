@@ -2,7 +2,7 @@
 
 use crate::closed_form::{Camera, Ray, codes_apart, decode, hit_box, hit_plane};
 use crate::draw::{Picture, file, frame, output, pick, png, samples, scene, scene_with, values};
-use crate::measure::{at_most, none_of};
+use crate::measure::{Worst, at_most, none_of};
 use glam::{DVec2, DVec3};
 use rasterd::pipeline::samples::pattern;
 use rasterd::plan::{FrameRequest, Output};
@@ -83,16 +83,16 @@ fn one_two_and_three_layers_are_composited_far_to_near() {
     for count in 1..=3 {
         let all = &SHEETS[..count];
         let picture = Picture::of(&sheets(&named(all), 1));
-        let (mut worst, mut deepest) = (0.0f64, 0);
+        let (mut worst, mut deepest) = (Worst::default(), 0);
         for (x, y, pixel) in picture.iter() {
             let Some(met) = camera.steady(x, y, 0.01, |ray| met(all, ray)) else { continue };
             let expected =
                 met.iter().fold(BACK.into(), |behind, &i| over(all[i].color, all[i].opacity, behind));
-            worst = worst.max(codes_apart(pixel, expected));
+            worst.note(codes_apart(pixel, expected));
             deepest = deepest.max(met.len());
         }
         assert_eq!(deepest, count, "they overlap");
-        at_most(&format!("{count} layers"), "largest difference in codes", worst, HALF_A_CODE);
+        at_most(&format!("{count} layers"), "largest difference in codes", worst.largest(), HALF_A_CODE);
     }
 }
 
@@ -150,7 +150,7 @@ fn sheets_that_cross_are_sorted_pixel_by_pixel() {
         hits.sort_by(|a, b| b.0.total_cmp(&a.0));
         hits.into_iter().map(|(_, i)| i).collect::<Vec<_>>()
     };
-    let (mut worst, mut orders) = (0.0f64, [0, 0]);
+    let (mut worst, mut orders) = (Worst::default(), [0, 0]);
     for (x, y, pixel) in Picture::of(&document).iter() {
         let Some(met) = camera.steady(x, y, 0.05, met) else { continue };
         if let [far, _] = met[..] {
@@ -158,10 +158,10 @@ fn sheets_that_cross_are_sorted_pixel_by_pixel() {
         }
         let expected =
             met.iter().fold(BACK.into(), |behind, &i| over(SHEETS[i].color, SHEETS[i].opacity, behind));
-        worst = worst.max(codes_apart(pixel, expected));
+        worst.note(codes_apart(pixel, expected));
     }
     assert!(orders.iter().all(|&n| n > 200), "{orders:?} pixels of each order");
-    at_most("sheets that cross", "largest difference in codes", worst, HALF_A_CODE);
+    at_most("sheets that cross", "largest difference in codes", worst.largest(), HALF_A_CODE);
 }
 
 #[test]
@@ -173,16 +173,16 @@ fn what_is_opaque_hides_what_is_blended_behind_it() {
     document["instances"]["box"] = json!({ "mesh": "box", "material": "wall", "translation": [0.15, 0, 0] });
     let (min, max) = (DVec3::new(-0.2, -0.7, -0.1), DVec3::new(0.5, 0.7, 0.1));
     let seen = |ray: Ray| (hit_box(ray, min, max).is_some(), met(&SHEETS, ray));
-    let mut worst = 0.0f64;
+    let mut worst = Worst::default();
     for (x, y, pixel) in Picture::of(&document).iter() {
         let Some((wall, met)) = camera.steady(x, y, 0.01, seen) else { continue };
         let behind = if wall { [0.7, 0.7, 0.1] } else { BACK };
         let before = met.iter().filter(|&&i| !wall || SHEETS[i].centre[2] > 0.1);
         let expected =
             before.fold(behind.into(), |behind, &i| over(SHEETS[i].color, SHEETS[i].opacity, behind));
-        worst = worst.max(codes_apart(pixel, expected));
+        worst.note(codes_apart(pixel, expected));
     }
-    at_most("a box among sheets", "largest difference in codes", worst, HALF_A_CODE);
+    at_most("a box among sheets", "largest difference in codes", worst.largest(), HALF_A_CODE);
 }
 
 /// What a sample of [`SHEETS`] sees: colour, premultiplied, and alpha.
@@ -209,7 +209,7 @@ fn samples_are_composited_one_by_one_and_then_averaged() {
             if back.is_none() {
                 document["environment"]["background"] = json!({ "type": "transparent" });
             }
-            let (mut worst, mut worst_alpha, mut edges) = (0.0f64, 0.0f64, 0);
+            let (mut worst, mut worst_alpha, mut edges) = (Worst::default(), Worst::default(), 0);
             for (x, y, pixel) in Picture::of(&document).iter() {
                 let place = |[dx, dy]: [i32; 2]| {
                     let (dx, dy) = (f64::from(dx) / 256.0, f64::from(dy) / 256.0);
@@ -231,14 +231,14 @@ fn samples_are_composited_one_by_one_and_then_averaged() {
                 let (color, alpha) = all.fold((DVec3::ZERO, 0.0), |sum, s| (sum.0 + s.0, sum.1 + s.1));
                 let (color, alpha) = (color / f64::from(count), alpha / f64::from(count));
                 if alpha > 0.0 {
-                    worst = worst.max(codes_apart(pixel, color / alpha));
+                    worst.note(codes_apart(pixel, color / alpha));
                 }
-                worst_alpha = worst_alpha.max((f64::from(pixel[3]) - 255.0 * alpha).abs());
+                worst_alpha.note((f64::from(pixel[3]) - 255.0 * alpha).abs());
             }
             let case = format!("blended edges, {count} samples, transparent {}", back.is_none());
             assert!(edges > 100, "{edges} pixels on edges");
-            at_most(&case, "largest difference in codes", worst, HALF_A_CODE);
-            at_most(&case, "largest difference of alpha", worst_alpha, HALF_A_CODE);
+            at_most(&case, "largest difference in codes", worst.largest(), HALF_A_CODE);
+            at_most(&case, "largest difference of alpha", worst_alpha.largest(), HALF_A_CODE);
         }
     }
 }
@@ -393,8 +393,8 @@ fn hundreds_of_layers_are_composited_in_order() {
         far_to_near.sort_by(|&a, &b| depth(a).total_cmp(&depth(b)));
         let expected = far_to_near.iter().fold(BACK.into(), |behind, &i| over(tint(i), opacity, behind));
         let picture = Picture::of(&document);
-        let worst = picture.pixels.iter().map(|pixel| codes_apart(*pixel, expected)).fold(0.0, f64::max);
-        at_most(&format!("{layers} layers, {count} samples"), "codes", worst, HALF_A_CODE);
+        let worst: Worst = picture.pixels.iter().map(|pixel| codes_apart(*pixel, expected)).collect();
+        at_most(&format!("{layers} layers, {count} samples"), "codes", worst.largest(), HALF_A_CODE);
     }
 }
 
@@ -504,7 +504,7 @@ fn data_outputs_and_pick_see_through_holes() {
     let ids = values(frame(&scene, &output(Output::Instance)));
     let depths = values(frame(&scene, &output(Output::Depth)));
     let albedo = Picture::new(frame(&scene, &output(Output::Albedo)));
-    let (mut wrong, mut worst, mut checked) = (0, 0.0f64, 0);
+    let (mut wrong, mut worst, mut checked) = (0, Worst::default(), 0);
     for (x, y, color) in albedo.iter() {
         let Some(Some(seen)) = holes.camera.steady(x, y, 0.02, |ray| holes.seen(ray).map(|n| n == 2)) else {
             continue;
@@ -515,7 +515,7 @@ fn data_outputs_and_pick_see_through_holes() {
             hit_plane(holes.camera.centre(x, y), DVec3::Y * height, DVec3::Y).expect("the camera looks down");
         let red = if seen { [255, 0, 0, 255] } else { [255; 4] };
         wrong += usize::from(ids[at] != 1 + u16::from(seen) || color != red);
-        worst = worst.max((f64::from(depths[at]) - 65535.0 * (s - 0.1) / 9.9).abs());
+        worst.note((f64::from(depths[at]) - 65535.0 * (s - 0.1) / 9.9).abs());
         if x % 16 == 3 && y % 16 == 5 {
             let hit = pick(&scene, x, y).expect("a surface");
             wrong += usize::from(hit.instance != u32::from(seen) || (hit.depth - s).abs() > 1e-3);
@@ -523,7 +523,7 @@ fn data_outputs_and_pick_see_through_holes() {
         checked += 1;
     }
     none_of("data outputs of holes", "wrong pixels", wrong, checked);
-    at_most("data outputs of holes", "depth in codes", worst, 4.0);
+    at_most("data outputs of holes", "depth in codes", worst.largest(), 4.0);
 }
 
 #[test]

@@ -206,6 +206,7 @@ mod tests {
             let d = Vec3::new(radius * angle.cos(), y, radius * angle.sin()).normalize();
             let [a, b] = tangents(d);
             for error in [a.dot(d), b.dot(d), a.dot(b), a.length() - 1.0, b.length() - 1.0] {
+                assert!(!error.is_nan(), "{d}");
                 worst = worst.max(error.abs());
             }
         }

@@ -2,7 +2,7 @@
 
 use super::{HEIGHT, Planes, WIDTH, largest_difference, map, noise, run, sample};
 use crate::draw::work;
-use crate::measure::{U, at_most};
+use crate::measure::{U, Worst, at_most};
 use crate::random::Random;
 use rasterd::scene::document::PostEffect;
 use std::cell::Cell;
@@ -125,7 +125,8 @@ fn fxaa_is_what_is_published() {
     let drawn = run(&[PostEffect::Fxaa], &planes, &work());
     let expected = filtered(&picture);
     let clear = expected.iter().zip(&drawn[0]).filter(|((_, close), _)| !close);
-    let worst = clear.map(|((value, _), drawn)| (value - f64::from(*drawn)).abs()).fold(0.0, f64::max);
+    let worst =
+        clear.map(|((value, _), drawn)| (value - f64::from(*drawn)).abs()).collect::<Worst>().largest();
     at_most("FXAA", "difference from f64", worst, 2e-6);
     let changed =
         expected.iter().zip(&picture).filter(|((value, close), own)| !close && value != *own).count();

@@ -5,7 +5,7 @@ mod neighbours;
 mod pointwise;
 
 use crate::draw::{pool, work, work_of};
-use crate::measure::{U, at_most};
+use crate::measure::{U, Worst, at_most};
 use crate::numerics::determinism::levels;
 use crate::random::Random;
 use glam::Vec3;
@@ -48,7 +48,7 @@ fn run(effects: &[PostEffect], planes: &Planes, work: &Work) -> Vec<Vec<f32>> {
 fn largest_difference(drawn: &[Vec<f32>], expected: &Planes) -> f64 {
     assert_eq!(drawn.len(), expected.len());
     let pairs = drawn.iter().flatten().zip(expected.iter().flatten());
-    pairs.map(|(drawn, expected)| (f64::from(*drawn) - expected).abs()).fold(0.0, f64::max)
+    pairs.map(|(drawn, expected)| (f64::from(*drawn) - expected).abs()).collect::<Worst>().largest()
 }
 
 fn tonemap(operator: TonemapOperator, exposure: f64) -> PostEffect {

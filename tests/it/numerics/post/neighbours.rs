@@ -2,7 +2,7 @@
 
 use super::{HEIGHT, Planes, WIDTH, largest_difference, map, noise, run, sample};
 use crate::draw::work;
-use crate::measure::{U, at_most};
+use crate::measure::{U, Worst, at_most};
 use crate::random::Random;
 use rasterd::scene::document::PostEffect;
 
@@ -46,7 +46,7 @@ fn a_blur_is_a_gaussian_and_keeps_what_is_constant() {
         let relative = drawn.iter().zip(&constants).flat_map(|(drawn, constant)| {
             drawn.iter().map(|value| (f64::from(*value) / constant[0] - 1.0).abs())
         });
-        at_most(&case, "drift of a constant in u", relative.fold(0.0, f64::max) / U, 4.0);
+        at_most(&case, "drift of a constant in u", relative.collect::<Worst>().largest() / U, 4.0);
     }
 }
 

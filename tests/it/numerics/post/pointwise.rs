@@ -2,7 +2,7 @@
 
 use super::{SIZE, tonemap};
 use crate::closed_form::encode;
-use crate::measure::{U, at_most};
+use crate::measure::{U, Worst, at_most};
 use crate::random::Random;
 use fearless_simd::Level;
 use rasterd::math::simd::*;
@@ -44,7 +44,7 @@ fn tone_mapping_takes_everything_to_0_to_1_in_order() {
                 let worst =
                     rising.iter().zip(&mapped).map(|(x, y)| (f64::from(y[0]) - curve(operator, *x)).abs());
                 let case = format!("B43 {name}, {} numbers", rising.len());
-                at_most(&case, "difference from f64", worst.fold(0.0, f64::max), 4.0 * U);
+                at_most(&case, "difference from f64", worst.collect::<Worst>().largest(), 4.0 * U);
             }
         }
         let odd = [[f32::NAN, -1.0, f32::NEG_INFINITY], [1e30, 65504.0, f32::INFINITY]];
@@ -75,7 +75,12 @@ fn grey_has_no_tint_and_stays_what_it_was() {
             .iter()
             .zip(&same)
             .flat_map(|(x, y)| y.map(|y| (f64::from(y) / f64::from(x[0]) - 1.0).abs()));
-        at_most(&format!("B45 amount {amount}"), "drift of grey in u", drift.fold(0.0, f64::max) / U, 2.0);
+        at_most(
+            &format!("B45 amount {amount}"),
+            "drift of grey in u",
+            drift.collect::<Worst>().largest() / U,
+            2.0,
+        );
     }
     let white = apply(PostEffect::Grayscale { amount: 1.0 }, &[[1.0; 3]])[0];
     assert!(white.iter().all(|y| (255.0 * encode(f64::from(*y)) + 0.5).floor() == 255.0), "{white:?}");
@@ -87,7 +92,7 @@ fn grey_has_no_tint_and_stays_what_it_was() {
         let [r, g, b] = c.map(f64::from);
         (f64::from(y[0]) - (0.2126 * r + 0.7152 * g + 0.0722 * b)).abs()
     });
-    at_most("B45 luminance", "difference from f64", worst.fold(0.0, f64::max), 2.0 * 4.0 * U);
+    at_most("B45 luminance", "difference from f64", worst.collect::<Worst>().largest(), 2.0 * 4.0 * U);
 }
 
 #[test]
@@ -105,5 +110,10 @@ fn a_colour_matrix_adds_its_last_column() {
         })
     });
     // Three products of at most 4, three sums of at most 14.
-    at_most("colour matrix", "difference from f64", worst.fold(0.0, f64::max), (12.0 + 3.0 * 14.0) * U);
+    at_most(
+        "colour matrix",
+        "difference from f64",
+        worst.collect::<Worst>().largest(),
+        (12.0 + 3.0 * 14.0) * U,
+    );
 }
