@@ -88,3 +88,21 @@ fn instance_code(seen: Option<&Triangle>, draws: &[Draw]) -> u16 {
         u16::try_from(place + 1).expect("invariant: a scene has at most MAX_INSTANCES")
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numerics: B42.
+    #[test]
+    fn a_value_becomes_the_nearest_of_all_16_bit_codes() {
+        for code in 0..=u16::MAX {
+            let exact = f64::from(code);
+            assert_eq!(unorm16(exact / 65535.0), code);
+            for beside in [exact - 0.499_999, exact + 0.499_999] {
+                assert_eq!(unorm16((beside / 65535.0).clamp(0.0, 1.0)), code);
+            }
+        }
+        assert_eq!(unorm16(f64::NAN), 0);
+    }
+}

@@ -13,6 +13,7 @@
 mod attributes;
 mod camera;
 mod clipping;
+mod codes;
 mod colour;
 mod coverage;
 mod crops;
