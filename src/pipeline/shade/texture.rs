@@ -143,10 +143,11 @@ fn level_of_detail<S: Simd>(simd: S, texture: &Texture, coordinates: &Coordinate
             d * d
         },
     );
-    let squared = max(texels(0) + texels(1), texels(2) + texels(3));
+    let (across, down) = (texels(0) + texels(1), texels(2) + texels(3));
     // What is not finite (at the horizon) takes the last level.
     let (least, most) = (f32x8::splat(simd, 1.0), f32x8::splat(simd, f32::MAX));
-    let bounded = squared.simd_lt(most).select(max(squared, least), most);
+    let is_finite = across.simd_lt(most) & down.simd_lt(most);
+    let bounded = is_finite.select(max(max(across, down), least), most);
     let last = f32x8::splat(simd, float(texture.mips.len()));
     min(approx::log2(bounded) * 0.5, last)
 }
