@@ -4,9 +4,14 @@ use super::interpolated::{corners, document, look, weights};
 use crate::draw::{Picture, plan, scene};
 use crate::measure::{U, Worst, at_most};
 use crate::random::Random;
+use fearless_simd::Level;
+use rasterd::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
 use rasterd::pipeline::geometry::setup::NOT_CLIPPED;
+use rasterd::pipeline::shade::BLOCK;
+use rasterd::pipeline::shade::texture::{Coordinates, sample};
 use rasterd::plan::FrameRequest;
 use serde_json::json;
+use std::sync::Arc;
 
 /// B21.
 #[test]
@@ -44,9 +49,38 @@ fn texture_coordinates_stay_within_sixteen_roundings_at_any_ratio_of_distances()
     }
 }
 
-/// B24: the level of detail comes from these.
+/// Texels of [`levels`] along a side, as in the [`document`]'s texture.
+const SIDE: u32 = 1024;
+
+/// The last level of it.
+const LAST: f64 = 10.0;
+
+/// What one level is brighter than the one above, in 65535ths.
+const BRIGHTER: u16 = 4095;
+
+/// A texture that shows the level at which it is read: each is of one grey, and trilinear filtering
+/// mixes two of them.
+fn levels() -> Texture {
+    let black = Image { width: SIDE, height: SIDE, texels: vec![[0, 0, 0, 255]; (SIDE * SIDE) as usize] };
+    let wrap = [Wrap::Repeat; 2];
+    let mut texture = Texture::new(Arc::new(black), ColorSpace::Linear, Filter::Trilinear, wrap);
+    for (mip, level) in Arc::make_mut(&mut texture.mips).iter_mut().zip(1..) {
+        mip.texels.fill([BRIGHTER * level; 4]);
+    }
+    texture
+}
+
+/// The level at which [`levels`] is read for one of a block's fragments.
+fn level_of(levels: &Texture, coordinates: &Coordinates, lane: usize) -> f64 {
+    let mut out = [[f32::NAN; BLOCK]; 4];
+    sample(Level::new(), levels, coordinates, lane + 1, &mut out);
+    f64::from(out[0][lane]) * 65535.0 / f64::from(BRIGHTER)
+}
+
 #[test]
-fn derivatives_of_texture_coordinates_give_the_level_to_a_256th() {
+fn b24_the_level_of_detail_is_right_to_a_256th_and_stays_within_the_levels() {
+    let levels = levels();
+    let mut between = 0;
     for ratio in [1.0, 1e2, 1e4, 1e6] {
         for (extent, turns) in [(30.0, 1.0), (1000.0, 1.0), (15_000.0, 1.0), (1000.0, 1e5)] {
             let mut random = Random(0xb24);
@@ -78,15 +112,43 @@ fn derivatives_of_texture_coordinates_give_the_level_to_a_256th() {
                         let value = corner.map(|at| uvs[at][c] - uvs[corner[0]][c]);
                         (sum(de, value) - sum(here, value) / d * sum(de, [1.0; 3])) / d
                     });
-                    let drawn = [0, 1].map(|c| f64::from(varyings.texture.per_pixel[2 * axis + c][lane]));
-                    let length = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
-                    [length(along), length(drawn)]
+                    along[0] * along[0] + along[1] * along[1]
                 };
-                let ([x, drawn_x], [y, drawn_y]) = (squared(0), squared(1));
-                worst.note((drawn_x.max(drawn_y) / x.max(y)).log2().abs() / 2.0);
+                let exact = squared(0).max(squared(1)).log2() / 2.0 + f64::from(SIDE).log2();
+                worst.note((level_of(&levels, &varyings.texture, lane) - exact.clamp(0.0, LAST)).abs());
+                between += usize::from(exact > 0.0 && exact < LAST);
             });
+            assert!(looked > 500, "{looked} points");
             let case = format!("B24 w ratio {ratio:e}, {extent} px, {turns:e} turns, {looked} points");
             at_most(&case, "error of the level", worst.largest(), 1.0 / 256.0);
+        }
+    }
+    assert!(between > 2000, "{between} points between the first level and the last");
+}
+
+/// At the horizon derivatives are infinite, or no numbers.
+#[test]
+fn b24_derivatives_beyond_all_bounds_read_the_first_level_or_the_last() {
+    let levels = levels();
+    let texel = 1.0 / SIDE as f32;
+    let all = [0..1, 1..2, 2..3, 3..4, 0..4];
+    for (step, expected, fields) in [
+        (0.0, 0.0, &all[..]),
+        (1e-40, 0.0, &all),
+        (texel, 0.0, &all[..4]),
+        (texel * 8.0, 3.0, &all[..4]),
+        (1.0, LAST, &all),
+        (1e30, LAST, &all),
+        (-f32::MAX, LAST, &all),
+        (f32::INFINITY, LAST, &all),
+        (f32::NAN, LAST, &all),
+    ] {
+        for fields in fields {
+            let mut coordinates = Coordinates::default();
+            coordinates.per_pixel[fields.clone()].fill([step; BLOCK]);
+            let level = level_of(&levels, &coordinates, 0);
+            let case = format!("B24 derivatives {fields:?} {step:e}");
+            at_most(&case, "error of the level", (level - expected).abs(), 1e-5);
         }
     }
 }

@@ -2,6 +2,7 @@
 //! (B13 – B15).
 
 use super::stage::*;
+use crate::draw::pool;
 use crate::measure::{U, Worst, at_most, none_of};
 use crate::random::Random;
 use glam::DVec3;
@@ -126,23 +127,32 @@ fn b14_a_sliver_keeps_its_depth_on_its_own_edge() {
     });
 }
 
+/// Samples of a picture of 8 × 8 that see a level triangle which fills it at the distance `w`.
+fn seen_at(w: f64) -> usize {
+    let view = perspective_view(8, 8, 1.0, 1.0);
+    let wide = |x: f64, y: f64| DVec3::new(x * w, y * w, -w);
+    let triangle = [wide(-4.0, -4.0), wide(8.0, -4.0), wide(-4.0, 8.0)];
+    let seen = visible(&bins(two_sided(soup(&[triangle])), &view, 1), 1);
+    seen.id.iter().filter(|&&id| id != 0).count()
+}
+
 /// What is so far away that its depth rounds to 0 counts as beyond the far plane; one step nearer is
-/// drawn, denormal or not.
+/// drawn, denormal or not. 2⁻¹⁵⁰ lies in the middle between 0 and the least f32, and rounds to even.
+///
+/// On every worker thread: each has its own way to treat denormals.
 #[test]
 fn b13_depth_zero_is_beyond_the_far_plane_and_the_least_depth_is_not() {
-    let view = perspective_view(8, 8, 1.0, 1.0);
-    let drawn = |w: f64| {
-        let wide = |x: f64, y: f64| DVec3::new(x * w, y * w, -w);
-        let triangle = [wide(-4.0, -4.0), wide(8.0, -4.0), wide(-4.0, 8.0)];
-        let seen = visible(&bins(two_sided(soup(&[triangle])), &view, 1), 1);
-        seen.id.iter().filter(|&&id| id != 0).count()
-    };
-    for exponent in [100, 126, 127, 140, 149] {
-        assert_eq!(drawn(2f64.powi(exponent)), 64, "2^{exponent}");
-    }
-    for exponent in [151, 160, 400] {
-        assert_eq!(drawn(2f64.powi(exponent)), 0, "2^{exponent}");
-    }
+    let threads = 7;
+    let checked = pool(threads).broadcast(|_| {
+        for exponent in [100, 126, 127, 140, 149] {
+            assert_eq!(seen_at(2f64.powi(exponent)), 64, "2^{exponent}");
+        }
+        assert_eq!(seen_at(2f64.powi(150) * (1.0 - f64::EPSILON)), 64, "just before 2^150");
+        for exponent in [150, 151, 160, 400] {
+            assert_eq!(seen_at(2f64.powi(exponent)), 0, "2^{exponent}");
+        }
+    });
+    assert_eq!(checked.len(), threads);
 }
 
 /// Parallel surfaces, level and tilted: the farther one is the nearer one scaled about the eye, so it
