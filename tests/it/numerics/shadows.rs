@@ -154,10 +154,13 @@ fn shadows_begin_where_a_box_stands_and_walls_do_not_leak() {
     }
 }
 
+/// Quarters that bring the light from above to every axis.
+const TURNS: [[i32; 3]; 6] = [[0, 0, 0], [90, 0, 0], [180, 0, 0], [-90, 0, 0], [0, 0, 90], [0, 0, -90]];
+
 /// B35.
 #[test]
 fn light_along_every_axis_gives_the_same_shadow() {
-    for turn in [[0, 0, 0], [90, 0, 0], [180, 0, 0], [-90, 0, 0], [0, 0, 90], [0, 0, -90]] {
+    for turn in TURNS {
         for light in [[0.0, -1.0, 0.0], [-1e-9, -1.0, 1e-9]] {
             let min = DVec3::new(-0.5, 0.4, -0.4);
             let turn = DVec3::from_array(turn.map(f64::from));
@@ -231,6 +234,12 @@ fn maps_of_any_size_are_defined() {
     assert!(faults.iter().any(|fault| fault.pointer == "/lights/sun/shadow/resolution"), "{faults:?}");
     let large = Document::from_json(&with(16_385)).expect("a number like any other");
     assert!(compile(&large, &rasterd::scene::Files::default(), None, &Limits::default()).is_err());
+}
+
+/// B38: a gigabyte.
+#[test]
+fn the_largest_map_is_right() {
+    BoxOnFloor { resolution: 16_384, ..setting() }.assert_as_cast("B38 map 16384");
 }
 
 /// What a map says of one place: texels from its centre, and depth.

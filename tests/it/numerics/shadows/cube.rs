@@ -1,6 +1,7 @@
 //! Shadows of point lights.
 
-use crate::closed_form::{Camera, Ray, hit_box, hit_plane};
+use crate::box_on_floor::{BoxOnFloor, Seen};
+use crate::closed_form::{Camera, Ray, hit_box};
 use crate::draw::{Picture, plan, scene, work};
 use crate::measure::{at_most, none_of};
 use crate::random::Random;
@@ -185,69 +186,228 @@ fn without_an_offset_a_plane_shadows_itself_in_the_light_of_a_lamp() {
     }
 }
 
-/// B34 around a lamp: against a ray cast to it, beyond the displacement that the bound allows.
+/// How a lamp's map is read.
+#[derive(Clone, Copy, Debug)]
+enum Reading {
+    Hard,
+    /// Radius in texels.
+    Pcf(f64),
+    /// Radius of the lamp in world units.
+    Pcss(f64),
+}
+
+impl Reading {
+    fn shadow(self, resolution: u32) -> Value {
+        match self {
+            Self::Hard => json!({ "filter": "hard", "resolution": resolution }),
+            Self::Pcf(radius) => json!({ "filter": "pcf", "resolution": resolution, "radius": radius }),
+            Self::Pcss(radius) => {
+                json!({ "filter": "pcss", "resolution": resolution, "light_radius": radius })
+            }
+        }
+    }
+
+    /// How far from the border of a shadow a point of the floor may be anything between light and dark.
+    fn reach(self, lamp: DVec3, p: DVec3, setting: &BoxOnFloor) -> f64 {
+        let towards = lamp - p;
+        // A texel is 2 w / resolution.
+        let texel = 2.0 * towards.abs().max_element() / f64::from(setting.resolution) * 1.05;
+        let displaced = |k: f64| 2.0 * std::f64::consts::SQRT_2 * (k + 0.5) * texel;
+        let across = match self {
+            Self::Hard => displaced(0.0),
+            Self::Pcf(k) => displaced(k),
+            Self::Pcss(radius) => {
+                // The widest penumbra is that of the box's nearest point.
+                let nearest = (lamp.clamp(setting.min, setting.max) - lamp).length();
+                displaced(0.0) + radius * (towards.length() / nearest - 1.0)
+            }
+        };
+        across * towards.length() / towards.y + 1e-3
+    }
+}
+
+/// The box on its floor under a lamp from where the light comes; turned as it is.
+fn under_a_lamp(setting: &BoxOnFloor, reading: Reading) -> Value {
+    let mut document = setting.document();
+    let at = [0, 1, 2].map(|i| -document["lights"]["sun"]["direction"][i].as_f64().expect("a number"));
+    let shadow = reading.shadow(setting.resolution);
+    document["lights"] =
+        json!({ "lamp": { "type": "point", "position": at, "intensity": 2, "shadow": shadow } });
+    document
+}
+
+/// Against a ray cast to the lamp: what is lit is wholly lit, what is dark wholly dark.
+fn assert_as_cast(case: &str, setting: &BoxOnFloor, reading: Reading) {
+    let document = under_a_lamp(setting, reading);
+    let mut without = document.clone();
+    without["render"]["shadows"] = json!(false);
+    let (with, without) = (Picture::of(&document), Picture::of(&without));
+    let lamp = -setting.light;
+    let reaches = |p: DVec3| {
+        let direction = lamp - p;
+        hit_box(Ray { origin: p, direction }, setting.min, setting.max).is_none_or(|s| s >= 1.0)
+    };
+    let (mut acne, mut leaks, mut lit, mut dark) = (0, 0, 0, 0);
+    for (x, y, pixel) in with.iter() {
+        let on_floor = |ray: Ray| {
+            let (seen, p) = setting.seen(ray);
+            seen == Seen::Floor && p.abs().max_element() < setting.floor - 0.1
+        };
+        if setting.camera.steady(x, y, 0.5, on_floor) != Some(true) {
+            continue;
+        }
+        let (_, p) = setting.seen(setting.camera.centre(x, y));
+        let apart = reading.reach(lamp, p, setting);
+        let around = |k: u32| {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 24.0).sin_cos();
+            [0.5, 1.0].map(|part| p + DVec3::new(cos, 0.0, sin) * apart * part)
+        };
+        let here = reaches(p);
+        if !(0..24).flat_map(around).all(|q| reaches(q) == here) {
+            continue;
+        }
+        if here {
+            lit += 1;
+            acne += usize::from(pixel != without.at(x, y));
+        } else {
+            dark += 1;
+            leaks += usize::from(pixel[0] != 0);
+        }
+    }
+    let case = format!("{case}, {reading:?}, {} a face", setting.resolution);
+    none_of(&case, "pixels in the light that are not wholly lit", acne, lit);
+    none_of(&case, "pixels in the shadow that are not wholly dark", leaks, dark);
+}
+
+fn setting(lamp: [f64; 3]) -> BoxOnFloor {
+    BoxOnFloor {
+        camera: Camera::perspective([-2.2, 5.2, 3.4], [-0.2, 0.2, -0.3], 60.0, 160, 120),
+        light: -DVec3::from(lamp),
+        ..super::setting()
+    }
+}
+
+/// B34 around a lamp, beyond the displacement that the bound allows.
 #[test]
 fn a_box_under_a_lamp_shadows_what_the_lamp_cannot_reach_and_nothing_else() {
-    let camera = Camera::perspective([-2.2, 5.2, 3.4], [-0.2, 0.2, -0.3], 60.0, 160, 120);
-    let (min, max) = (DVec3::new(-0.5, 0.0, -0.4), DVec3::new(0.4, 1.0, 0.5));
     let lamps = [[1.0, 2.0, 1.0], [-1.5, 1.5, 0.2], [0.05, 3.0, 0.05], [2.0, 0.7, -1.0], [0.8, 1.4, -0.9]];
     for (i, lamp) in lamps.into_iter().enumerate() {
         for resolution in [256, 1024] {
-            let document = json!({
-                "camera": camera.document(),
-                "environment": { "ambient": [0, 0, 0], "background": { "type": "color", "color": "#00f" } },
-                "lights": { "lamp": { "type": "point", "position": lamp, "intensity": 1e6,
-                    "shadow": { "filter": "hard", "resolution": resolution } } },
-                "materials": { "white": { "shading": "lambert", "diffuse": [1, 1, 1] } },
-                "meshes": { "box": { "type": "box", "size": (max - min).to_array() },
-                    "floor": { "type": "plane", "size": [8, 8] } },
-                "instances": {
-                    "box": { "mesh": "box", "material": "white", "translation": ((min + max) / 2.0).to_array() },
-                    "floor": { "mesh": "floor", "material": "white" },
-                },
-                "render": camera.render(1),
-            });
-            let lamp = DVec3::from(lamp);
-            // On the floor: whether the box lies before it, and whether the lamp is seen.
-            let at = |ray: Ray| hit_plane(ray, DVec3::ZERO, DVec3::Y).map(|s| (s, ray.at(s)));
-            let reaches = |p: DVec3| {
-                let direction = lamp - p;
-                hit_box(Ray { origin: p, direction }, min, max).is_none_or(|s| s >= 1.0)
-            };
-            let (mut acne, mut leaks, mut lit, mut dark) = (0, 0, 0, 0);
-            for (x, y, pixel) in Picture::of(&document).iter() {
-                let on_floor = |ray: Ray| {
-                    at(ray).is_some_and(|(s, p)| {
-                        p.abs().max_element() < 3.9 && hit_box(ray, min, max).is_none_or(|b| b > s)
-                    })
-                };
-                if camera.steady(x, y, 0.5, on_floor) != Some(true) {
-                    continue;
-                }
-                let (_, p) = at(camera.centre(x, y)).expect("on the floor");
-                // 2√2 · ½ texel across the light, on the floor; a texel is 2 w / resolution.
-                let towards = lamp - p;
-                let texel = 2.0 * towards.abs().max_element() / f64::from(resolution) * 1.05;
-                let apart = std::f64::consts::SQRT_2 * texel * towards.length() / towards.y + 1e-3;
-                let around = |k: u32| {
-                    let angle = f64::from(k) * std::f64::consts::TAU / 16.0;
-                    p + DVec3::new(angle.cos(), 0.0, angle.sin()) * apart * f64::from(1 + k % 2) / 2.0
-                };
-                let here = reaches(p);
-                if !(0..16).all(|k| reaches(around(k)) == here) {
-                    continue;
-                }
-                if here {
-                    lit += 1;
-                    acne += usize::from(pixel[0] == 0);
-                } else {
-                    dark += 1;
-                    leaks += usize::from(pixel[0] != 0);
-                }
+            let setting = BoxOnFloor { resolution, ..setting(lamp) };
+            assert_as_cast(&format!("B34 box under lamp {i}"), &setting, Reading::Hard);
+        }
+    }
+}
+
+/// B34 around a lamp.
+#[test]
+fn filtered_shadows_of_a_lamp_begin_where_a_box_stands_and_walls_do_not_leak() {
+    let wall = (DVec3::new(-1.5, 0.0, -0.03), DVec3::new(1.0, 0.8, 0.03));
+    let slab = (DVec3::new(-0.6, 0.3, -0.5), DVec3::new(0.5, 0.34, 0.6));
+    let block = (setting([1.0; 3]).min, setting([1.0; 3]).max);
+    for (name, (min, max), lamp) in [
+        ("box", block, [1.0, 2.0, 1.0]),
+        ("box", block, [-1.5, 1.5, 0.2]),
+        ("box", block, [0.8, 1.4, -0.9]),
+        ("thin wall", wall, [0.3, 1.6, 0.9]),
+        ("thin wall", wall, [-1.0, 2.0, -0.8]),
+        ("slab that floats", slab, [0.4, 1.7, -0.3]),
+    ] {
+        let setting = BoxOnFloor { min, max, resolution: 1024, ..setting(lamp) };
+        for reading in [Reading::Pcf(1.0), Reading::Pcf(4.0), Reading::Pcss(0.02), Reading::Pcss(0.1)] {
+            assert_as_cast(&format!("B34 {name} under a lamp at {lamp:?}"), &setting, reading);
+        }
+    }
+}
+
+const READINGS: [Reading; 3] = [Reading::Hard, Reading::Pcf(3.0), Reading::Pcss(0.05)];
+
+/// B35 around a lamp: each side of its cube in turn looks at the box.
+#[test]
+fn a_lamp_on_every_axis_throws_the_same_shadow() {
+    for turn in super::TURNS {
+        for lamp in [[0.0, 2.0, 0.0], [1e-9, 2.0, -1e-9]] {
+            let turn = DVec3::from_array(turn.map(f64::from));
+            let setting = BoxOnFloor { turn, min: DVec3::new(-0.5, 0.4, -0.4), ..setting(lamp) };
+            for reading in READINGS {
+                assert_as_cast(&format!("B35 turned by {turn}, lamp {lamp:?}"), &setting, reading);
             }
-            let case = format!("B34 box under lamp {i}, {resolution} a face");
-            none_of(&case, "dark pixels in the light", acne, lit);
-            none_of(&case, "lit pixels in the shadow", leaks, dark);
+        }
+    }
+}
+
+/// B36: a lamp that is shut in lights nothing outside.
+#[test]
+fn a_lamp_inside_of_a_caster_leaves_all_else_dark() {
+    for reading in READINGS {
+        let setting = setting([-0.05, 0.5, 0.1]);
+        let picture = Picture::of(&under_a_lamp(&setting, reading));
+        // Where the box stands, beyond the bound on a displacement from the light inside.
+        let on_floor = |&(x, y, _): &(u32, u32, _)| {
+            let (seen, p) = setting.seen(setting.camera.centre(x, y));
+            let outside = (p.clamp(setting.min, setting.max) - p).length();
+            seen == Seen::Floor && outside > Reading::Pcf(3.0).reach(-setting.light, p, &setting)
+        };
+        let floor: Vec<_> = picture.iter().filter(on_floor).collect();
+        let leaks = floor.iter().filter(|(_, _, pixel)| pixel[0] != 0).count();
+        none_of(&format!("B36 shut in, {reading:?}"), "lit pixels", leaks, floor.len());
+    }
+}
+
+/// B36: a shade next to a lamp, as small as it is near, darkens what lies below; nearer than 10⁻⁵ of the
+/// farthest caster it is none, and the picture that without it.
+#[test]
+fn a_caster_next_to_a_lamp_shades_unless_it_is_nearer_than_the_near_limit() {
+    for reading in READINGS {
+        let setting = setting([-1.0, 2.0, 1.0]);
+        let without = under_a_lamp(&setting, reading);
+        let with = |distance: f64| {
+            let mut document = without.clone();
+            document["meshes"]["shade"] =
+                json!({ "type": "plane", "size": [distance * 20.0, distance * 20.0] });
+            document["instances"]["shade"] = json!({ "mesh": "shade", "translation": [-1.0, 2.0 - distance, 1.0], "receives_shadow": false });
+            Picture::of(&document)
+        };
+        let plain = Picture::of(&without);
+        // A lamp that is larger than its shade is not hidden by it.
+        let hides: &[f64] = if matches!(reading, Reading::Pcss(_)) { &[] } else { &[1e-3, 1e-4] };
+        for &distance in hides {
+            let lit = with(distance).pixels.iter().filter(|pixel| pixel[0] > 0).count();
+            none_of(
+                &format!("B36 shade {distance:e} below, {reading:?}"),
+                "lit pixels",
+                lit,
+                plain.pixels.len(),
+            );
+        }
+        // The search for blockers begins as wide as the near limit demands: other taps find their mean.
+        let passed: &[f64] = if matches!(reading, Reading::Pcss(_)) { &[] } else { &[1e-6, 1e-9] };
+        for &distance in passed {
+            assert!(with(distance) == plain, "{distance:e}, {reading:?}");
+        }
+    }
+}
+
+/// B36 around a lamp.
+#[test]
+fn flat_and_pointlike_scenes_under_a_lamp_are_lit_and_finite() {
+    for reading in READINGS {
+        let whole = under_a_lamp(&setting([-1.0, 2.0, 1.0]), reading);
+        let cases: [(&str, super::Change); 4] = [
+            ("box shrunk to a point", &|d| d["instances"]["box"]["scale"] = json!(0)),
+            ("two floors in one plane", &|d| d["instances"]["box"] = d["instances"]["floor"].clone()),
+            ("nothing but the floor", &|d| d["instances"] = json!({ "floor": d["instances"]["floor"] })),
+            ("a point where the lamp is", &|d| {
+                d["instances"]["box"]["scale"] = json!(0);
+                d["instances"]["box"]["translation"] = d["lights"]["lamp"]["position"].clone();
+            }),
+        ];
+        for (name, change) in cases {
+            let mut document = whole.clone();
+            change(&mut document);
+            let picture = Picture::of(&document);
+            let dark = picture.pixels.iter().filter(|pixel| pixel[..3] == [0; 3]).count();
+            none_of(&format!("B36 {name}, {reading:?}"), "dark pixels", dark, picture.pixels.len());
         }
     }
 }

@@ -80,8 +80,68 @@ fn a_kernel_without_size_is_the_hard_shadow() {
     assert!(of(json!({ "filter": "pcss", "resolution": 200, "light_radius": 1e-9 })) == hard);
 }
 
-/// B34: beyond the displacement that the bound allows, what is lit is wholly lit and what is dark wholly
-/// dark.
+/// Kernels: of a radius in texels, or as wide as a light makes them, given by the tangent of its half-angle.
+#[derive(Clone, Copy, Debug)]
+enum Kernel {
+    Pcf(f64),
+    Pcss(f64),
+}
+
+impl Kernel {
+    const ALL: [Self; 5] =
+        [Self::Pcf(1.0), Self::Pcf(2.0), Self::Pcf(4.0), Self::Pcss(0.02), Self::Pcss(0.08)];
+
+    fn shadow(self, resolution: u32) -> Value {
+        match self {
+            Self::Pcf(radius) => json!({ "filter": "pcf", "resolution": resolution, "radius": radius }),
+            Self::Pcss(light) => json!({ "filter": "pcss", "resolution": resolution, "light_radius": light }),
+        }
+    }
+
+    /// Across the light, how far from its border a shadow may be anything between light and dark: the
+    /// bound on a displacement, 2√2 (k + ½) texels; and the penumbra of what is `highest` above a floor.
+    ///
+    /// A point that lies `r` beyond the border lies `r tan θ` farther down the slanted floor, and the
+    /// penumbra there is as much wider: `r = tangent (d + r tan θ)`.
+    fn reach(self, texel: f64, highest: f64, light: DVec3) -> f64 {
+        let displaced = |k: f64| 2.0 * std::f64::consts::SQRT_2 * (k + 0.5) * texel;
+        match self {
+            Self::Pcf(radius) => displaced(radius),
+            Self::Pcss(tangent) => {
+                let cosine = light.normalize().y.abs();
+                let slope = (1.0 - cosine * cosine).sqrt() / cosine;
+                displaced(0.0) + tangent * highest / cosine / (1.0 - tangent * slope)
+            }
+        }
+    }
+}
+
+/// Beyond the border of any shadow, what is lit is wholly lit and what is dark wholly dark.
+fn assert_as_cast(case: &str, setting: &BoxOnFloor, kernel: Kernel) {
+    let mut document = setting.document();
+    let sun = &mut document["lights"]["sun"];
+    sun["intensity"] = json!(0.9);
+    sun["shadow"] = kernel.shadow(setting.resolution);
+    let mut without = document.clone();
+    without["render"]["shadows"] = json!(false);
+    let apart = kernel.reach(BoxOnFloor::texel(&document), setting.max.y, setting.light);
+    let (with, without) = (Picture::of(&document), Picture::of(&without));
+    let (mut acne, mut leaks, mut lit, mut dark) = (0, 0, 0, 0);
+    for (x, y, reached) in setting.beyond_doubt(apart) {
+        if reached {
+            lit += 1;
+            acne += usize::from(with.at(x, y) != without.at(x, y));
+        } else {
+            dark += 1;
+            leaks += usize::from(with.at(x, y)[0] != 0);
+        }
+    }
+    let case = format!("{case}, {kernel:?}");
+    none_of(&case, "pixels in the light that are not wholly lit", acne, lit);
+    none_of(&case, "pixels in the shadow that are not wholly dark", leaks, dark);
+}
+
+/// B34.
 #[test]
 fn filtered_shadows_begin_where_a_box_stands_and_walls_do_not_leak() {
     for (name, min, max) in [
@@ -90,7 +150,7 @@ fn filtered_shadows_begin_where_a_box_stands_and_walls_do_not_leak() {
         ("slab that floats", [-0.6, 0.3, -0.5], [0.5, 0.34, 0.6]),
     ] {
         for (i, light) in [[-0.5, -1.0, -0.3], [0.7, -0.5, -0.6], [0.3, -1.0, 0.4]].into_iter().enumerate() {
-            for radius in [1.0, 2.0, 4.0] {
+            for kernel in Kernel::ALL {
                 let setting = BoxOnFloor {
                     min: min.into(),
                     max: max.into(),
@@ -98,30 +158,37 @@ fn filtered_shadows_begin_where_a_box_stands_and_walls_do_not_leak() {
                     resolution: 1024,
                     ..setting()
                 };
-                let mut document = setting.document();
-                let sun = &mut document["lights"]["sun"];
-                sun["intensity"] = json!(0.9);
-                sun["shadow"] = json!({ "filter": "pcf", "resolution": 1024, "radius": radius });
-                let mut without = document.clone();
-                without["render"]["shadows"] = json!(false);
-                // 2√2 (k + ½) texels across the light.
-                let texel = BoxOnFloor::texel(&document);
-                let apart = 2.0 * std::f64::consts::SQRT_2 * (radius + 0.5) * texel;
-                let (with, without) = (Picture::of(&document), Picture::of(&without));
-                let (mut acne, mut leaks, mut lit, mut dark) = (0, 0, 0, 0);
-                for (x, y, reached) in setting.beyond_doubt(apart) {
-                    if reached {
-                        lit += 1;
-                        acne += usize::from(with.at(x, y) != without.at(x, y));
-                    } else {
-                        dark += 1;
-                        leaks += usize::from(with.at(x, y)[0] != 0);
-                    }
-                }
-                let case = format!("B34 {name}, light {i}, PCF k = {radius}");
-                none_of(&case, "pixels in the light that are not wholly lit", acne, lit);
-                none_of(&case, "pixels in the shadow that are not wholly dark", leaks, dark);
+                assert_as_cast(&format!("B34 {name}, light {i}"), &setting, kernel);
             }
+        }
+    }
+}
+
+/// B35: the axes of a kernel come from the same basis as those of its map.
+#[test]
+fn light_along_every_axis_gives_the_same_filtered_shadow() {
+    for turn in super::TURNS {
+        for light in [[0.0, -1.0, 0.0], [-1e-9, -1.0, 1e-9]] {
+            for kernel in [Kernel::Pcf(3.0), Kernel::Pcss(0.1)] {
+                let min = DVec3::new(-0.5, 0.4, -0.4);
+                let turn = DVec3::from_array(turn.map(f64::from));
+                let setting = BoxOnFloor { turn, light: light.into(), min, ..setting() };
+                assert_as_cast(&format!("B35 turned by {turn}, light {light:?}"), &setting, kernel);
+            }
+        }
+    }
+}
+
+/// B36.
+#[test]
+fn casters_far_before_the_receivers_throw_filtered_shadows() {
+    for height in [10.0, 1e3, 1e5] {
+        let light = DVec3::new(-0.3 / height, -1.0, 0.2 / height);
+        let (min, max) = (DVec3::new(-0.5, height, -0.4), DVec3::new(0.4, height + 1.0, 0.5));
+        let setting = BoxOnFloor { min, max, light, ..setting() };
+        // The penumbra is a tenth of a unit wide.
+        for kernel in [Kernel::Pcf(3.0), Kernel::Pcss(0.1 / height)] {
+            assert_as_cast(&format!("B36 caster {height:e} above"), &setting, kernel);
         }
     }
 }
