@@ -3,7 +3,7 @@
 use crate::box_on_floor::{BoxOnFloor, Seen};
 use crate::closed_form::{Camera, Ray, hit_box};
 use crate::draw::{Picture, plan, scene, work};
-use crate::measure::{at_most, none_of};
+use crate::measure::{Worst, at_most, none_of};
 use crate::random::Random;
 use fearless_simd::Level;
 use glam::DVec3;
@@ -102,29 +102,43 @@ impl Pair {
 /// B40: across the border of two sides, visibility changes no more than elsewhere.
 #[test]
 fn the_sides_of_a_cube_meet_without_a_seam() {
-    let mut rng = Random::new("B40", 0x5eed_0b40);
-    let boxes: Vec<_> = (0..40).map(|i| (rng.direction() * (2.0 + f64::from(i % 3)), 0.6)).collect();
+    const CAGES: u32 = 8;
+    const PAIRS: u32 = 10_000;
     for (filter, shadow) in [
         ("hard", json!({ "filter": "hard", "resolution": 256 })),
         ("PCF", json!({ "filter": "pcf", "resolution": 256, "radius": 3 })),
         ("PCSS", json!({ "filter": "pcss", "resolution": 256, "light_radius": 0.1 })),
     ] {
-        let map = cage(&boxes, &shadow);
+        let mut rng = Random::new("B40", 0x5eed_0b40);
+        // One cage has more edges on some borders of sides than in their middles, or fewer.
+        let cages: Vec<ShadowMap> = (0..CAGES)
+            .map(|_| {
+                let boxes: Vec<_> =
+                    (0..40).map(|i| (rng.direction() * (2.0 + f64::from(i % 3)), 0.6)).collect();
+                cage(&boxes, &shadow)
+            })
+            .collect();
         let mut jumps = |pair: Pair| {
-            let places: Vec<DVec3> =
-                (0..20_000).flat_map(|_| pair.random(&mut rng)).map(|d| d.normalize() * 20.0).collect();
-            let seen = visible(&map, &places);
-            let partly = seen.iter().filter(|&&v| v > 0.0 && v < 1.0).count();
+            let (mut most, mut sum, mut partly) = (Worst::default(), 0.0, 0);
+            for map in &cages {
+                let places: Vec<DVec3> =
+                    (0..PAIRS).flat_map(|_| pair.random(&mut rng)).map(|d| d.normalize() * 20.0).collect();
+                let seen = visible(map, &places);
+                partly += seen.iter().filter(|&&v| v > 0.0 && v < 1.0).count();
+                for pair in seen.chunks(2) {
+                    let jump = f64::from((pair[0] - pair[1]).abs());
+                    most.note(jump);
+                    sum += jump;
+                }
+            }
             assert!(filter == "hard" || partly > 1000, "{filter}: {partly} in half shadow");
-            let jumps = seen.chunks(2).map(|pair| f64::from((pair[0] - pair[1]).abs()));
-            let (most, sum) = jumps.fold((0.0f64, 0.0), |(most, sum), jump| (most.max(jump), sum + jump));
-            println!("B40 {filter}, {pair:?}: jumps of at most {most:.4}, {:.2e} on average", sum / 2e4);
-            (most, sum / 2e4)
+            let (most, mean) = (most.largest(), sum / f64::from(CAGES * PAIRS));
+            println!("B40 {filter}, {pair:?}: jumps of at most {most:.4}, {mean:.2e} on average");
+            (most, mean)
         };
         let [border, texels, free] = [Pair::AcrossBorder, Pair::AcrossTexels, Pair::Free].map(&mut jumps);
         at_most(&format!("B40 {filter}"), "largest jump across a border", border.0, texels.0.max(free.0));
-        // Forty boxes do not lie evenly: a seam would be many times as much.
-        at_most(&format!("B40 {filter}"), "mean jump across a border", border.1, 2.0 * texels.1.max(free.1));
+        at_most(&format!("B40 {filter}"), "mean jump across a border", border.1, texels.1.max(free.1));
     }
 }
 
