@@ -206,6 +206,69 @@ mod tests {
         }
     }
 
+    /// The line of sight of a place between the table's entries.
+    fn sight_between(row: f64, column: f64, sun_up: f64) -> Sight {
+        let up = (row / (ROWS - 1) as f64).powi(2);
+        let azimuth_cosine = 1.0 - 2.0 * column / (COLUMNS - 1) as f64;
+        let [across, sun_across] = [up, sun_up].map(|y: f64| (1.0 - y * y).max(0.0).sqrt());
+        let sunwards = up * sun_up + across * sun_across * azimuth_cosine;
+        Sight { radius_km: GROUND_KM, up, sunwards, sun_up }
+    }
+
+    /// Linear, at black.
+    const HALF_A_CODE: f64 = 0.5 / 255.0 / 12.92;
+
+    /// Numerics: B46. What is read between entries is off by what linear interpolation leaves, an eighth
+    /// of the second differences along rows and along columns: of the largest around, and twice that; or,
+    /// where the earth's shadow ends within a cell, by half a code at black.
+    #[test]
+    fn between_its_entries_the_table_is_the_model() {
+        for (turbidity, elevation) in [(1.0, 60.0), (3.0, 10.0), (10.0, 1.0), (3.0, -3.0)] {
+            let sun_up = f64::to_radians(elevation).sin();
+            let air = SunlitAir::new(Air::new(turbidity), sun_up);
+            let model = |row: f64, column: f64| {
+                let gathered = air.gather(sight_between(row, column, sun_up));
+                [gathered.molecules(), gathered.haze]
+            };
+            let gathered: Vec<_> = (0..ROWS * COLUMNS).map(|at| air.gather(sight(at, sun_up))).collect();
+            let table: Vec<_> = gathered.iter().map(|entry| [entry.molecules(), entry.haze]).collect();
+            let exposure = exposure(mean(&gathered, sun_up).dot(LUMINANCE));
+            let bends = |which: usize, at: [usize; 2], step: [usize; 2]| {
+                let entry = |k: usize| table[(at[0] + k * step[0]) * COLUMNS + at[1] + k * step[1]][which];
+                (entry(0) - entry(1) * 2.0 + entry(2)).abs()
+            };
+            let (mut looked_at, mut most) = (0, 0.0f64);
+            for i in 1..ROWS - 2 {
+                for j in 1..COLUMNS - 2 {
+                    let (s, t) = (0.5, if (i + j) % 2 == 0 { 0.5 } else { 0.25 });
+                    let (row, column) = (i as f64 + s, j as f64 + t);
+                    let exact = model(row, column);
+                    let sunwards = sight_between(row, column, sun_up).sunwards;
+                    let phases = [rayleigh_phase(sunwards), haze_phase(sunwards)].map(|p| p * exposure);
+                    for which in 0..2 {
+                        let entry = |i: usize, j: usize| table[i * COLUMNS + j][which];
+                        let between = |i: usize| entry(i, j).lerp(entry(i, j + 1), t);
+                        let error = (between(i).lerp(between(i + 1), s) - exact[which]).abs();
+                        let along_rows = [0, 1].into_iter().flat_map(|a| [0, 1].map(|b| [i - 1 + a, j + b]));
+                        let along_columns =
+                            [0, 1].into_iter().flat_map(|a| [0, 1].map(|b| [i + a, j - 1 + b]));
+                        let rows = along_rows.map(|at| bends(which, at, [1, 0])).reduce(DVec3::max);
+                        let columns = along_columns.map(|at| bends(which, at, [0, 1])).reduce(DVec3::max);
+                        let bound =
+                            (rows.unwrap() + columns.unwrap()) * (2.0 / 8.0) * phases[which] + HALF_A_CODE;
+                        let error = error * phases[which];
+                        assert!(error.cmple(bound).all(), "{row} {column}: {error} > {bound}");
+                        most = most.max(error.max_element());
+                        looked_at += 1;
+                    }
+                }
+            }
+            println!(
+                "B46 sun at {elevation}°, turbidity {turbidity}: radiance off by {most:.2e}, {looked_at} values"
+            );
+        }
+    }
+
     #[test]
     fn every_sky_is_finite_and_not_negative() {
         for turbidity in [1.0, 2.0, 10.0, 20.0] {

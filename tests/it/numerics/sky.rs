@@ -1,14 +1,17 @@
 //! Backgrounds at their stiffest: seams, poles, the widest view, no geometry and nothing but geometry.
 
 use crate::closed_form::{Camera, codes_apart, encode};
-use crate::draw::{Picture, file, frame, png, scene_with};
+use crate::draw::{Picture, file, frame, output, plan, png, scene_with};
 use crate::measure::{U, Worst, at_most, none_of};
 use crate::random::Random;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rasterd::math::simd::*;
 use rasterd::math::{Projection, View};
+use rasterd::model::sky::Daylight;
+use rasterd::model::sky::daylight::{COLUMNS, ROWS, SUN_RADIUS, haze_phase, rayleigh_phase};
+use rasterd::pipeline::Pixels;
 use rasterd::pipeline::sky::rays::Rays;
-use rasterd::plan::FrameRequest;
+use rasterd::plan::{FrameRequest, Output};
 use rasterd::scene::Files;
 use serde_json::{Value, json};
 
@@ -218,4 +221,90 @@ fn b46_the_sky_is_only_where_nothing_else_is() {
     let (a, b) = (of(nothing.clone(), sky), of(nothing, red));
     let solid = a.pixels.len() - differ(&a, &b);
     none_of("B46 no geometry", "pixels without sky", solid, a.pixels.len());
+}
+
+/// A procedural sky in a direction, by its table, in f64. `turned` is added to the cosine of the angle
+/// to the sun.
+fn computed(sky: &Daylight, view: &View, ray: DVec3, turned: f64) -> DVec3 {
+    let sight = ray.normalize();
+    // Below the horizon the sky goes on as it is there.
+    let above = DVec3::new(sight.x, sight.y.max(0.0), sight.z).normalize();
+    let sun = sky.towards_sun;
+    let azimuth = |d: DVec3| DVec2::new(d.x, d.z).normalize();
+    let row = above.y.sqrt() * (ROWS - 1) as f64;
+    let column = (1.0 - azimuth(above).dot(azimuth(sun))) / 2.0 * (COLUMNS - 1) as f64;
+    let column = column.clamp(0.0, (COLUMNS - 1) as f64);
+    let (i, j) = ((row as usize).min(ROWS - 2), (column as usize).min(COLUMNS - 2));
+    let (s, t) = (row - i as f64, column - j as f64);
+    let entry = |c: usize| {
+        let at = |i: usize, j: usize| f64::from(sky.table[i * COLUMNS + j][c]);
+        let between = |i: usize| at(i, j) * (1.0 - t) + at(i, j + 1) * t;
+        between(i) * (1.0 - s) + between(i + 1) * s
+    };
+    let cosine = above.dot(sun) + turned;
+    let molecules = DVec3::new(entry(0), entry(1), entry(2)) * rayleigh_phase(cosine);
+    let haze = DVec3::new(entry(3), entry(4), entry(5)) * haze_phase(cosine);
+
+    let unit = |x: f64| x.clamp(0.0, 1.0);
+    let pixel = (256.0 / view.scale[0].min(view.scale[1]) / ray.length()).max(SUN_RADIUS / 10.0);
+    let disc = unit((SUN_RADIUS - (sight - sun).length()) / pixel + 0.5) * unit(sight.y / pixel + 0.5);
+    let seen = molecules + haze + sky.disc.as_dvec3() * disc;
+    // Through haze, the plain is e⁻¹ of itself at a hundredth of straight down.
+    let hidden = if sight.y < 0.0 { (-0.01 * (-1.0 / sight.y - 1.0)).exp() } else { 0.0 };
+    seen.lerp(sky.ground.as_dvec3(), hidden) + sky.night.as_dvec3()
+}
+
+#[test]
+fn b46_a_computed_sky_is_read_as_its_table_says() {
+    for (elevation_deg, turbidity) in [(55.0, 3.0), (5.0, 8.0), (-3.0, 1.5), (89.9, 2.0)] {
+        let (sin, cos) = f64::to_radians(elevation_deg).sin_cos();
+        let towards = DVec3::new(0.6 * cos, sin, -0.8 * cos);
+        let sky = Daylight::new(towards.normalize(), turbidity);
+        let (mut worst, mut looked_at) = (Worst::default(), 0);
+        for (target, fov) in [
+            ([0.6, 0.4, -0.8], 100.0),
+            ([-0.5, -0.1, 1.0], 120.0),
+            ([1.0, 0.0, 0.3], 2.0),
+            (towards.to_array(), 3.0),
+            ([1e-3, 1.0, 0.0], 60.0),
+            ([0.1, -1.0, 0.2], 150.0),
+        ] {
+            let camera = Camera::perspective([0.0; 3], target, fov, 90, 70);
+            let background = json!({ "type": "sky", "sun_direction": (-towards).to_array(),
+                "turbidity": turbidity });
+            let scene = scene_with(&document(&camera, &background), &Files::default());
+            let plan = plan(&scene, &output(Output::Radiance));
+            let Pixels::Rgba32F { pixels, .. } = frame(&scene, &output(Output::Radiance)).pixels else {
+                panic!("asked for radiance")
+            };
+            for ((x, y), pixel) in camera.pixels().zip(pixels) {
+                let at = [(x, camera.width), (y, camera.height)]
+                    .map(|(n, size)| f64::from(n) * 256.0 + 128.0 - f64::from(size) * 128.0);
+                let ray = plan.view.ray(at);
+                let ray = ray / ray.dot(plan.view.forward);
+                let exact = computed(&sky, &plan.view, ray, 0.0);
+                // A direction of f32, and its length, are off by up to 4u; the cosine by three products,
+                // two sums and both vectors; what follows is a few dozen steps of one rounding each.
+                let off = |changed: DVec3| (changed - exact).abs();
+                let moved = |axis: DVec3| {
+                    let step = axis * ray.length() * 4.0 * U;
+                    let [a, b] = [step, -step].map(|step| off(computed(&sky, &plan.view, ray + step, 0.0)));
+                    a.max(b)
+                };
+                let turned = [8.0, -8.0].map(|u| off(computed(&sky, &plan.view, ray, u * U)));
+                let bound = moved(DVec3::X)
+                    + moved(DVec3::Y)
+                    + moved(DVec3::Z)
+                    + turned[0].max(turned[1])
+                    + exact * 24.0 * U;
+                for c in 0..3 {
+                    worst.note((f64::from(pixel[c]) - exact[c]).abs() / bound[c]);
+                }
+                looked_at += 1;
+            }
+        }
+        assert!(looked_at > 30_000);
+        let case = format!("B46 sky, sun at {elevation_deg}°, turbidity {turbidity}");
+        at_most(&case, "error in parts of its bound", worst.largest(), 1.0);
+    }
 }
