@@ -1,10 +1,11 @@
 //! Filtered shadows of a straight edge against closed forms: how wide they are, and how they fade.
 
-use crate::closed_form::{Camera, decode, hit_plane};
-use crate::draw::{Picture, plan, scene};
+use crate::closed_form::{Camera, Ray, decode, hit_plane};
+use crate::draw::{Picture, frame, output, plan, scene};
 use crate::measure::at_most;
 use glam::DVec3;
-use rasterd::plan::FrameRequest;
+use rasterd::pipeline::Pixels;
+use rasterd::plan::{FrameRequest, Output};
 use serde_json::{Value, json};
 
 /// A floor, half of it under a sheet that ends above the middle, seen from the side that is lit. All of
@@ -183,5 +184,210 @@ fn pcss_penumbrae_of_a_lamp_are_as_wide_as_a_ball_makes_them() {
         at_most(&case, "relative error of the penumbra's width", (measured / expected - 1.0).abs(), 0.1);
         at_most(&case, "displacement of its middle in radii", middle.abs() / expected, 0.1);
         at_most(&case, "mean error across it", profile.distance_from_disc(expected), 0.03);
+    }
+}
+
+/// A tilted floor, partly under a level sheet, in slanted light: the shadow of the sheet's edge runs
+/// through the origin, and nothing is parallel to anything.
+struct Slanted {
+    /// Of the sheet's edge over the origin.
+    height: f64,
+    light: Emitter,
+    shadow: Value,
+    /// Half of what is looked at on either side of the shadow's edge.
+    window: f64,
+}
+
+/// A light of some size.
+#[derive(Clone, Copy)]
+enum Emitter {
+    /// A disc infinitely far away: the tangent of its half-angle.
+    Sun(f64),
+    /// A ball, seen as a disc from wherever its light arrives: its radius, and how far from the origin.
+    Ball(f64, f64),
+}
+
+/// The way to the middle of the light, from the origin.
+fn towards_light() -> DVec3 {
+    (across() * 0.5 + DVec3::Y + along() * 0.3).normalize()
+}
+
+/// Along the sheet's edge.
+fn along() -> DVec3 {
+    across().cross(DVec3::Y)
+}
+
+fn tilted_normal() -> DVec3 {
+    (across() * -0.35 + DVec3::Y + along() * 0.25).normalize()
+}
+
+/// Rays to the disc of a light. Their mean over half of the disc is off by less than 0.002.
+const RAYS: u32 = 1536;
+
+impl Slanted {
+    fn camera(&self) -> Camera {
+        let eye = (across() + DVec3::Y + along() * 0.2) * 20.0;
+        Camera::orthographic(eye.to_array(), [0.0; 3], self.window * 1.8, 160, 160)
+    }
+
+    /// The middle of the sheet's edge.
+    fn edge(&self) -> DVec3 {
+        towards_light() * (self.height / towards_light().y)
+    }
+
+    /// Across the shadow's edge on the floor, towards the lit side.
+    fn across_shadow(&self) -> DVec3 {
+        // The light's middle, the sheet's edge and the shadow's lie in one plane.
+        let plane = towards_light().cross(along());
+        let edge = tilted_normal().cross(plane);
+        let side = edge.cross(tilted_normal()).normalize();
+        side * side.dot(across()).signum()
+    }
+
+    fn document(&self) -> Value {
+        let camera = self.camera();
+        let light = match self.light {
+            Emitter::Sun(_) => json!({ "type": "directional", "direction": (-towards_light()).to_array() }),
+            Emitter::Ball(_, far) => json!({ "type": "point", "position": (towards_light() * far).to_array(),
+                "attenuation": { "constant": 1, "quadratic": 0 } }),
+        };
+        let mut document = json!({
+            "camera": camera.document(),
+            "environment": { "ambient": [0, 0, 0], "background": { "type": "color", "color": "#00f" } },
+            "lights": { "light": light },
+            "materials": { "white": { "shading": "lambert", "diffuse": [1, 1, 1], "double_sided": true } },
+            "meshes": { "floor": { "type": "triangles", "indices": [0, 1, 2, 0, 2, 3] },
+                "sheet": { "type": "plane", "size": [6, 12] } },
+            "instances": {
+                "floor": { "mesh": "floor", "material": "white", "casts_shadow": false },
+                "sheet": { "mesh": "sheet", "material": "white", "receives_shadow": false,
+                    "translation": (self.edge() - across() * 3.0).to_array(), "rotation_deg": [0, TURN_DEG, 0] },
+            },
+            "render": camera.render(1),
+        });
+        let (a, b) = tilted_normal().any_orthonormal_pair();
+        let corner = |(x, y): (f64, f64)| (a * x + b * y).to_array();
+        document["meshes"]["floor"]["positions"] =
+            json!([(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)].map(corner));
+        document["lights"]["light"]["shadow"] = self.shadow.clone();
+        document
+    }
+
+    /// Whether a ray meets the sheet.
+    fn is_hidden(&self, ray: Ray) -> bool {
+        let Some(s) = hit_plane(ray, self.edge(), DVec3::Y) else { return false };
+        let p = ray.at(s) - self.edge();
+        (-6.0..0.0).contains(&p.dot(across())) && p.dot(along()).abs() < 6.0
+    }
+
+    /// The part of the light that a point sees, by casting rays to its disc.
+    fn cast(&self, p: DVec3) -> f64 {
+        let (middle, radius) = match self.light {
+            Emitter::Sun(tangent) => (towards_light(), tangent),
+            Emitter::Ball(radius, far) => (towards_light() * far - p, radius),
+        };
+        let (a, b) = middle.normalize().any_orthonormal_pair();
+        let lit = (0..RAYS).filter(|&i| {
+            // A spiral by the golden angle: H. Vogel, "A better way to construct the sunflower head", 1979.
+            let r = radius * ((f64::from(i) + 0.5) / f64::from(RAYS)).sqrt();
+            let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
+            !self.is_hidden(Ray { origin: p, direction: middle + a * (r * cos) + b * (r * sin) })
+        });
+        lit.count() as f64 / f64::from(RAYS)
+    }
+
+    /// How light falls off across the shadow's edge: as drawn, and as cast.
+    fn profiles(&self) -> [Profile; 2] {
+        let radiance = |shadows: bool| {
+            let mut document = self.document();
+            document["render"]["shadows"] = json!(shadows);
+            match frame(&scene(&document), &output(Output::Radiance)).pixels {
+                Pixels::Rgba32F { pixels, .. } => pixels,
+                _ => panic!("asked for radiance"),
+            }
+        };
+        let (with, without) = (radiance(true), radiance(false));
+        let (camera, across_shadow) = (self.camera(), self.across_shadow());
+        let mut bins = vec![[0.0; 3]; BINS];
+        for ((x, y), (with, without)) in camera.pixels().zip(with.iter().zip(&without)) {
+            let ray = camera.centre(x, y);
+            let p = ray.at(hit_plane(ray, DVec3::ZERO, tilted_normal()).expect("the camera looks down"));
+            let at = ((p.dot(across_shadow) / self.window + 1.0) * 0.5 * BINS as f64).floor();
+            if (0.0..BINS as f64).contains(&at) && !self.is_hidden(ray) {
+                let drawn = f64::from(with[0]) / f64::from(without[0]);
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "one of the bins"
+                )]
+                let bin = &mut bins[at as usize];
+                *bin = [bin[0] + drawn, bin[1] + self.cast(p), bin[2] + 1.0];
+            }
+        }
+        let of = |which: usize| bins.iter().map(|bin| bin[which] / bin[2]).collect();
+        [0, 1].map(|which| Profile { window: self.window, light: of(which) })
+    }
+
+    /// How far on the floor half a texel, along both of the map's axes and twice, may move a shadow.
+    fn displacement(&self) -> f64 {
+        let plan = plan(&scene(&self.document()), &FrameRequest::default());
+        let texel = 256.0 / plan.shadows[0].faces()[0].view.scale[0];
+        let texel = match self.light {
+            Emitter::Sun(_) => texel,
+            // In the plane of the side that sees the origin.
+            Emitter::Ball(_, far) => texel * (towards_light() * far).abs().max_element(),
+        };
+        std::f64::consts::SQRT_2 * texel / tilted_normal().dot(towards_light())
+    }
+
+    /// Radius of the penumbra, roughly.
+    fn penumbra(&self) -> f64 {
+        let above = self.height / towards_light().y;
+        let across_light = match self.light {
+            Emitter::Sun(tangent) => tangent * above,
+            Emitter::Ball(radius, far) => radius * above / (far - above),
+        };
+        across_light / tilted_normal().dot(towards_light())
+    }
+}
+
+/// The penumbra as it is drawn and as 1536 rays a point find it.
+#[test]
+fn pcss_penumbrae_of_slanted_light_on_slanted_ground_are_as_wide_as_rays_find_them() {
+    let pcss = |light_radius: f64, more: Value| {
+        let mut shadow = json!({ "filter": "pcss", "light_radius": light_radius });
+        shadow.as_object_mut().expect("a shadow").extend(more.as_object().cloned().unwrap_or_default());
+        shadow
+    };
+    for (light, height, more) in [
+        (Emitter::Sun(0.05), 1.0, json!({})),
+        (Emitter::Sun(0.05), 2.5, json!({})),
+        (Emitter::Sun(0.15), 1.5, json!({ "search_taps": 64, "filter_taps": 128 })),
+        (Emitter::Sun(0.05), 2.0, json!({ "search_radius": 30 })),
+        (Emitter::Ball(0.1, 5.0), 1.0, json!({})),
+        (Emitter::Ball(0.1, 5.0), 2.0, json!({})),
+        (Emitter::Ball(0.3, 6.0), 1.5, json!({ "search_taps": 64, "filter_taps": 128 })),
+        (Emitter::Ball(0.1, 5.0), 2.0, json!({ "search_radius": 30 })),
+    ] {
+        let (name, radius) = match light {
+            Emitter::Sun(tangent) => (format!("PCSS sun of {tangent}"), tangent),
+            Emitter::Ball(radius, far) => (format!("PCSS lamp of {radius} at {far}"), radius),
+        };
+        let case = format!("{name}, slanted, blocker {height} above, {more}");
+        let mut slanted = Slanted { height, light, shadow: pcss(radius, more), window: 0.0 };
+        slanted.window = 1.7 * slanted.penumbra();
+        let [drawn, cast] = slanted.profiles();
+        let ((width, middle), (true_width, true_middle)) =
+            (drawn.radius_and_middle(), cast.radius_and_middle());
+        at_most(&case, "relative error of the penumbra's width", (width / true_width - 1.0).abs(), 0.1);
+        let displaced = (middle - true_middle).abs() / true_width;
+        let bound = 0.02 + slanted.displacement() / true_width;
+        at_most(&case, "displacement of its middle in radii", displaced, bound);
+        let apart: f64 = drawn.light.iter().zip(&cast.light).map(|(a, b)| (a - b).abs()).sum();
+        // An edge that is moved by d is off by d on the mean of it, over the width that is looked at.
+        let bound = 0.02 + bound * true_width / (2.0 * slanted.window);
+        at_most(&case, "mean error across it", apart / BINS as f64, bound);
+        let ends = [cast.light[0], 1.0 - cast.light[BINS - 1]];
+        assert!(ends.iter().all(|&end| end < 0.01), "{case}: all of the penumbra is looked at: {ends:?}");
     }
 }
