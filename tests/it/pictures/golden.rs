@@ -4,9 +4,10 @@
 //! `target/golden/<pass>/`. `RASTERD_BLESS=1 cargo test --test it golden` rewrites the pictures; look at
 //! every one of them before it is committed.
 
+mod files;
 mod relief;
 
-use crate::draw::{file, frame, output, png, samples, scene_with, work};
+use crate::draw::{file, frame, output, png, samples, scene_with};
 use rasterd::encode;
 use rasterd::limits::Limits;
 use rasterd::pipeline::{Frame, Pixels, Stats, Timings};
@@ -487,18 +488,4 @@ fn golden_gallery() {
         let scene = piece.to_scene().compile(&Limits::default()).expect("a scene");
         assert_golden(&format!("gallery/{}", piece.name), &frame(&Arc::new(scene), &request));
     }
-}
-
-/// What is lost is lost in the same way on every machine.
-#[test]
-fn lossy_files_have_the_same_bytes_everywhere() {
-    let ball = stored("shade/a_ball_in_blinn_phong.png");
-    for quality in [30, 80, 95] {
-        let jpeg = encode::jpeg(&ball, quality, &work()).expect("nobody cancels");
-        assert_golden_file(&format!("encode/a_ball_at_quality_{quality}.jpg"), &jpeg);
-    }
-    let balls =
-        ["blinn_phong", "lambert", "normal"].map(|name| stored(&format!("shade/a_ball_in_{name}.png")));
-    let gif = encode::gif(&balls, 50, &work()).expect("nobody cancels");
-    assert_golden_file("encode/three_balls_share_a_palette.gif", &gif);
 }
