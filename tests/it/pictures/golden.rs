@@ -5,6 +5,7 @@
 //! every one of them before it is committed.
 
 mod files;
+mod instances;
 mod relief;
 
 use crate::draw::{file, frame, output, png, samples, scene_with};
@@ -222,6 +223,7 @@ fn golden_textures() {
         document
     };
     check("texture/nearest_aliases_at_the_horizon", &floor("nearest"));
+    check("texture/bilinear_changes_levels_at_a_line", &floor("bilinear"));
     check("texture/trilinear_fades_to_the_mean_at_the_horizon", &floor("trilinear"));
     // A gradient with a red corner at u = v = 0, so that every turn and mirror image shows.
     let ramp = |x: u32, y: u32| {
@@ -265,6 +267,9 @@ fn golden_shadows() {
     check("shadow/pcf_softens_every_edge_alike", &sun(pcf));
     let pcss = json!({ "filter": "pcss", "resolution": 512, "light_radius": 0.15 });
     check("shadow/pcss_is_sharp_where_it_begins", &sun(pcss));
+    let many = json!({ "filter": "pcss", "resolution": 512, "light_radius": 0.15, "search_radius": 24,
+        "search_taps": 64, "filter_taps": 200 });
+    check("shadow/pcss_with_many_taps_has_no_grain", &sun(many));
     for cull in ["front", "back"] {
         let mut document = sun(json!({ "filter": "hard", "resolution": 512, "cull": cull }));
         document["meshes"]["box"] = json!({ "type": "plane", "size": [0.7, 0.7] });
@@ -284,6 +289,9 @@ fn golden_point_shadows() {
     check("shadow/a_lamp_throws_pcf_shadows", &lamp(pcf));
     let ball = json!({ "filter": "pcss", "resolution": 512, "light_radius": 0.12 });
     check("shadow/a_glowing_ball_throws_soft_shadows", &lamp(ball));
+    let few = json!({ "filter": "pcss", "resolution": 512, "light_radius": 0.12, "search_radius": 16,
+        "search_taps": 4, "filter_taps": 4 });
+    check("shadow/a_glowing_ball_seen_by_four_taps", &lamp(few));
 }
 
 #[test]
@@ -318,6 +326,22 @@ fn golden_transparency() {
     clear["environment"]["background"] = json!({ "type": "transparent" });
     clear["render"] = json!({ "width": 64, "height": 64, "samples": 4 });
     check("blend/a_clear_ball_on_a_transparent_background", &clear);
+}
+
+#[test]
+fn golden_opacity_map() {
+    let mut document = still_life();
+    document["textures"]["fade"] = json!({ "file": "fade.png" });
+    document["materials"]["pane"] =
+        json!({ "diffuse": "#f0b030", "opacity_map": "fade", "double_sided": true });
+    document["meshes"]["pane"] = json!({ "type": "plane", "size": [2.2, 1.2] });
+    document["instances"]["pane"] = json!({ "mesh": "pane", "material": "pane", "translation": [0.1, 0.6, 0.8], "rotation_deg": [90, 0, 0] });
+    // Clear on the left, with three solid bars.
+    let part = |n: u32| u8::try_from(n * 255 / 63).expect("64 texels");
+    let bar = |y: u32| y % 24 / 4 == 2;
+    let fade = file("fade.png", png(64, 64, |x, y| [if bar(y) { 255 } else { part(x) }, 40, 90, 255]));
+    let frame = draw(&document, &fade, &FrameRequest::default());
+    assert_golden("blend/an_opacity_map_fades_a_pane_between_bars", &frame);
 }
 
 /// Two round holes and a ragged outline.
