@@ -13,6 +13,7 @@ pub mod draw;
 pub mod geometry;
 mod output;
 mod pick;
+mod picture;
 pub mod post;
 pub mod program;
 mod resolve;
@@ -34,11 +35,14 @@ pub use work::{Cancelled, Work};
 use crate::plan::{Output, Plan};
 use geometry::bin::TileGrid;
 use geometry::{Bins, Counts};
-use post::{Effect, LinearFrame};
+use picture::Picture;
+use post::{Chain, Effect};
 use shade::Lighting;
 use shade::light::LightSource;
+use shadow::ShadowMap;
+use stats::TileTimes;
 use std::time::Instant;
-use tiles::{Resolved, Shared, Tile};
+use tiles::{AlphaTests, Look, Shared};
 
 /// Draws one frame.
 ///
@@ -60,8 +64,9 @@ pub fn render_with(plan: &Plan, effects: &[&dyn Effect], work: &Work) -> Result<
     Ok(frames.into_iter().next().expect("a frame for each plan"))
 }
 
-/// Draws a frame for each plan. Plans that show the same triangles, as the outputs of one request do,
-/// are drawn from one pass over them.
+/// Draws a frame for each plan. Of plans that show the same triangles, as the outputs of one request do,
+/// these are transformed, clipped and binned once; and of those with the same samples every tile is looked
+/// at once.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -69,72 +74,108 @@ pub fn render_each(plans: &[Plan], work: &Work) -> Result<Vec<Frame>, Cancelled>
     draw_each(plans, &[], work)
 }
 
-/// Draws a frame for each plan. The order of the lines is the order of the passes.
+/// Draws a frame for each plan, look by look. The order of the lines is the order of the passes.
 fn draw_each(plans: &[Plan], effects: &[&dyn Effect], work: &Work) -> Result<Vec<Frame>, Cancelled> {
-    let mut frames = Vec::with_capacity(plans.len());
+    let mut frames: Vec<Option<Frame>> = plans.iter().map(|_| None).collect();
     let mut passes: Vec<(&Plan, Bins)> = Vec::new();
-    for plan in plans {
-        let mut timings = Timings::default();
-        let shadow_maps = timed(&mut timings, "shadow", !plan.shadows.is_empty(), || {
-            shadow::render_maps(&plan.shadows, work)
-        })?;
-        let drawn = passes.iter().position(|(drawn, _)| plan.shows_the_triangles_of(drawn));
-        let pass = timed(&mut timings, "geometry", drawn.is_none(), || match drawn {
-            Some(pass) => Ok(pass),
-            None => transform_clip_and_bin(plan, plans, work).map(|bins| {
-                passes.push((plan, bins));
+    while let Some(first) = frames.iter().position(Option::is_none) {
+        let is_of_look = |&at: &usize| frames[at].is_none() && plans[at].looks_as(&plans[first]);
+        let look: Vec<usize> = (first..plans.len()).filter(is_of_look).collect();
+        let mut drafts: Vec<Draft> = look.iter().map(|&at| Draft::new(&plans[at], effects)).collect();
+        drafts.iter_mut().try_for_each(|draft| draft.render_shadow_maps(work))?;
+        let known = passes.iter().position(|(plan, _)| plans[first].shows_the_triangles_of(plan));
+        let pass = match known {
+            Some(pass) => pass,
+            None => {
+                passes.push((&plans[first], drafts[0].transform_clip_and_bin(plans, work)?));
                 passes.len() - 1
-            }),
-        })?;
-        let mut frame = draw_output(plan, &passes[pass].1, &shadow_maps, effects, timings, work)?;
-        if drawn.is_some() {
-            frame.stats.geometry = Counts::default();
+            }
+        };
+        let drawn = draw_tiles(drafts, &passes[pass].1, work)?;
+        look.into_iter().zip(drawn).for_each(|(at, frame)| frames[at] = Some(frame));
+    }
+    Ok(frames.into_iter().map(|frame| frame.expect("every plan is of a look")).collect())
+}
+
+/// A frame under way.
+struct Draft<'a> {
+    plan: &'a Plan,
+    chain: Chain<'a>,
+    shadow_maps: Vec<ShadowMap>,
+    /// Of the camera's pass, if it is this frame's.
+    counts: Counts,
+    timings: Timings,
+}
+
+impl<'a> Draft<'a> {
+    fn new(plan: &'a Plan, effects: &[&'a dyn Effect]) -> Self {
+        let effects = if plan.output == Output::Color { effects } else { &[] };
+        let (chain, counts, timings) =
+            (Chain::new(&plan.post, effects), Counts::default(), Timings::default());
+        Self { plan, chain, shadow_maps: Vec::new(), counts, timings }
+    }
+
+    fn render_shadow_maps(&mut self, work: &Work) -> Result<(), Cancelled> {
+        if !self.plan.shadows.is_empty() {
+            let began = Instant::now();
+            self.shadow_maps = shadow::render_maps(&self.plan.shadows, work)?;
+            self.timings.push("shadow", milliseconds(began));
         }
-        frames.push(frame);
+        Ok(())
+    }
+
+    /// The camera's geometry, binned by tile for all of `others` that show the same triangles.
+    fn transform_clip_and_bin(&mut self, others: &[Plan], work: &Work) -> Result<Bins, Cancelled> {
+        let began = Instant::now();
+        let bins = transform_clip_and_bin(self.plan, others, work)?;
+        self.counts = bins.counts;
+        self.timings.push("geometry", milliseconds(began));
+        Ok(bins)
+    }
+
+    fn finish(
+        mut self,
+        picture: Picture,
+        shared: &Shared,
+        shaded: u64,
+        work: &Work,
+    ) -> Result<Frame, Cancelled> {
+        let pixels = picture.finish(self.plan, shared, &self.chain, &mut self.timings, work)?;
+        let stats = Stats::new(self.counts, shaded, self.plan);
+        Ok(Frame::new(self.plan, pixels, stats, self.timings))
+    }
+}
+
+/// Draws the tiles of the frames of one look, per tile cover → shade → sky → resolve → write, and what
+/// follows them.
+fn draw_tiles(mut drafts: Vec<Draft>, bins: &Bins, work: &Work) -> Result<Vec<Frame>, Cancelled> {
+    let plans: Vec<&Plan> = drafts.iter().map(|draft| draft.plan).collect();
+    let maps: Vec<Vec<ShadowMap>> =
+        drafts.iter_mut().map(|draft| std::mem::take(&mut draft.shadow_maps)).collect();
+    let shared: Vec<Shared> = plans.iter().zip(&maps).map(|(plan, maps)| share(plan, bins, maps)).collect();
+    let transparent = shared.iter().map(|shared| shared.background.is_transparent());
+    let mut pictures: Vec<Picture> =
+        drafts.iter().zip(transparent).map(|(draft, t)| Picture::new(draft.plan, &draft.chain, t)).collect();
+
+    let began = Instant::now();
+    let look = Look { bins, samples: plans[0].samples, tests: AlphaTests::of(plans[0]) };
+    let tasks = pictures.iter_mut().zip(&plans).zip(&shared);
+    let tasks = tasks.map(|((picture, plan), shared)| picture.tasks(plan, shared)).collect();
+    let times = tiles::draw(&look, tasks, work)?;
+    let rate = milliseconds(began) / times.iter().map(TileTimes::total).sum::<f64>().max(f64::MIN_POSITIVE);
+
+    let mut frames = Vec::with_capacity(plans.len());
+    for (((mut draft, picture), shared), times) in drafts.into_iter().zip(pictures).zip(&shared).zip(times) {
+        draft.timings.push_tiles(rate, &times);
+        frames.push(draft.finish(picture, shared, times.shaded, work)?);
     }
     Ok(frames)
 }
 
-/// The camera's geometry, binned by tile for all of `others` that show the same triangles.
-fn transform_clip_and_bin(plan: &Plan, others: &[Plan], work: &Work) -> Result<Bins, Cancelled> {
-    let same = others.iter().filter(|other| other.shows_the_triangles_of(plan)).chain([plan]);
-    let counts: Vec<u32> = same.map(|plan| plan.samples).collect();
-    let most = counts.iter().fold(1, |most, &count| most.max(count));
-    let all: Vec<[i32; 2]> = counts.iter().flat_map(|&count| samples::pattern(count)).copied().collect();
-    let grid = TileGrid::new(&plan.view, tiles::tile_shift(most), &all);
-    geometry::run(&plan.items, &plan.view, grid, work)
-}
-
-/// What the plan's output shows of the triangles.
-fn draw_output(
-    plan: &Plan,
-    bins: &Bins,
-    maps: &[shadow::ShadowMap],
-    effects: &[&dyn Effect],
-    timings: Timings,
-    work: &Work,
-) -> Result<Frame, Cancelled> {
-    match plan.output {
-        Output::Color => draw_colors(plan, bins, maps, effects, timings, work),
-        Output::Normal | Output::Albedo | Output::Radiance => {
-            draw_colors(plan, bins, maps, &[], timings, work)
-        }
-        Output::Depth | Output::Instance => draw_values(plan, bins, timings, work),
-        Output::Wireframe => draw_wireframe(plan, bins, timings, work),
-    }
-}
-
-/// Draws a picture of colours: per tile cover → shade → sky → resolve → write.
-fn draw_colors(
-    plan: &Plan,
-    bins: &Bins,
-    maps: &[shadow::ShadowMap],
-    effects: &[&dyn Effect],
-    mut timings: Timings,
-    work: &Work,
-) -> Result<Frame, Cancelled> {
+/// What the tiles of a frame share.
+fn share<'a>(plan: &'a Plan, bins: &'a Bins, maps: &'a [ShadowMap]) -> Shared<'a> {
     let anchor = shade::anchor(plan.scene.bounds(plan.t), &plan.view);
-    let shared = Shared {
+    Shared {
         bins,
         draws: &plan.draws,
         items: &plan.items,
@@ -148,112 +189,18 @@ fn draw_colors(
         frames: plan.shadows.iter().map(shadow::frame).collect(),
         background: sky::Background::new(&plan.background, &plan.view),
         samples: plan.samples,
-    };
-    let chain = post::Chain::new(&plan.post, effects);
-    let (pixels, shaded) = match plan.output {
-        Output::Radiance => draw_radiance(plan, &shared, &mut timings, work)?,
-        _ if chain.is_empty() => draw_bytes(plan, &shared, &mut timings, work)?,
-        _ => draw_and_post(plan, &shared, &chain, &mut timings, work)?,
-    };
-    let maps = plan.shadows.iter().map(|pass| pass.faces().len()).sum();
-    Ok(Frame::new(plan, pixels, Stats::new(bins, shaded, maps), timings))
-}
-
-/// Tiles that end in bytes. Returns how many fragments were shaded, too.
-fn draw_bytes(
-    plan: &Plan,
-    shared: &Shared,
-    timings: &mut Timings,
-    work: &Work,
-) -> Result<(Pixels, u64), Cancelled> {
-    let mut pixels = vec![[0; 4]; plan.view.pixels()];
-    let tiles = tiles::split(&mut pixels, &shared.bins.grid);
-    let write = |resolved: &Resolved, tile: Tile<[u8; 4]>| {
-        output::encode_tile(work.level, resolved, &plan.post.in_tiles, tile);
-    };
-    let shaded = draw_tiles(shared, tiles, write, timings, work)?;
-    Ok((Pixels::Rgba8 { pixels, opaque: !shared.background.is_transparent() }, shaded))
-}
-
-/// Tiles that end in linear colour, and nothing else.
-fn draw_radiance(
-    plan: &Plan,
-    shared: &Shared,
-    timings: &mut Timings,
-    work: &Work,
-) -> Result<(Pixels, u64), Cancelled> {
-    let mut pixels = vec![[0.0; 4]; plan.view.pixels()];
-    let tiles = tiles::split(&mut pixels, &shared.bins.grid);
-    let write =
-        |resolved: &Resolved, tile: Tile<[f32; 4]>| output::write_radiance(work.level, resolved, tile);
-    let shaded = draw_tiles(shared, tiles, write, timings, work)?;
-    Ok((Pixels::Rgba32F { pixels, opaque: !shared.background.is_transparent() }, shaded))
-}
-
-/// Tiles that end in linear colour for the effects of `chain`, then those, then bytes.
-fn draw_and_post(
-    plan: &Plan,
-    shared: &Shared,
-    chain: &post::Chain,
-    timings: &mut Timings,
-    work: &Work,
-) -> Result<(Pixels, u64), Cancelled> {
-    let transparent = shared.background.is_transparent();
-    let mut linear = LinearFrame::new([plan.view.width, plan.view.height], transparent, chain.spare_planes());
-    let tiles = linear.tiles(&shared.bins.grid);
-    let write = |resolved: &Resolved, tile: Tile<f32>| {
-        post::write_tile(work.level, resolved, &plan.post.in_tiles, tile);
-    };
-    let shaded = draw_tiles(shared, tiles, write, timings, work)?;
-    let began = Instant::now();
-    chain.run(&mut linear, work)?;
-    let mut pixels = vec![[0; 4]; plan.view.pixels()];
-    output::encode_frame(&linear, chain.last_steps(), &mut pixels, work)?;
-    timings.push("post", milliseconds(began));
-    Ok((Pixels::Rgba8 { pixels, opaque: !transparent }, shaded))
-}
-
-/// Draws the tiles of a picture of colours and notes their times. Returns how many fragments were
-/// shaded.
-fn draw_tiles<P: Send>(
-    shared: &Shared,
-    tiles: Vec<Tile<P>>,
-    write: impl Fn(&Resolved, Tile<P>) + Sync,
-    timings: &mut Timings,
-    work: &Work,
-) -> Result<u64, Cancelled> {
-    let began = Instant::now();
-    let times = tiles::draw(shared, tiles, write, work)?;
-    timings.push_tiles(milliseconds(began), &times);
-    Ok(times.shaded)
-}
-
-/// Draws a picture of 16-bit values: distances or instances, straight from what each pixel sees.
-fn draw_values(plan: &Plan, bins: &Bins, mut timings: Timings, work: &Work) -> Result<Frame, Cancelled> {
-    let mut pixels = vec![0; plan.view.pixels()];
-    let began = Instant::now();
-    output::draw_values(plan, bins, &mut pixels, work)?;
-    timings.push("raster", milliseconds(began));
-    Ok(Frame::new(plan, Pixels::Gray16(pixels), Stats::new(bins, 0, 0), timings))
-}
-
-/// Draws the edges of what each pixel sees.
-fn draw_wireframe(plan: &Plan, bins: &Bins, mut timings: Timings, work: &Work) -> Result<Frame, Cancelled> {
-    let mut pixels = vec![[0; 4]; plan.view.pixels()];
-    let began = Instant::now();
-    output::draw_wireframe(plan, bins, &mut pixels, work)?;
-    timings.push("raster", milliseconds(began));
-    Ok(Frame::new(plan, Pixels::Rgba8 { pixels, opaque: true }, Stats::new(bins, 0, 0), timings))
-}
-
-/// Runs a pass and notes its time, if it is one that this frame has.
-fn timed<T>(timings: &mut Timings, pass: &'static str, runs: bool, f: impl FnOnce() -> T) -> T {
-    let began = Instant::now();
-    let result = f();
-    if runs {
-        timings.push(pass, milliseconds(began));
+        nearest: samples::nearest_to_centre(plan.samples),
     }
-    result
+}
+
+/// The camera's geometry, binned by tile for all of `others` that show the same triangles.
+fn transform_clip_and_bin(plan: &Plan, others: &[Plan], work: &Work) -> Result<Bins, Cancelled> {
+    let same = others.iter().filter(|other| other.shows_the_triangles_of(plan)).chain([plan]);
+    let counts: Vec<u32> = same.map(|plan| plan.samples).collect();
+    let most = counts.iter().fold(1, |most, &count| most.max(count));
+    let all: Vec<[i32; 2]> = counts.iter().flat_map(|&count| samples::pattern(count)).copied().collect();
+    let grid = TileGrid::new(&plan.view, tiles::tile_shift(most), &all);
+    geometry::run(&plan.items, &plan.view, grid, work)
 }
 
 fn milliseconds(since: Instant) -> f64 {

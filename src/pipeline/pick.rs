@@ -32,7 +32,7 @@ pub fn pick(plan: &Plan, x: u32, y: u32, work: &Work) -> Result<Option<Hit>, Can
     let place = [x >> shift, y >> shift];
     let mut scratch = Scratch::default();
     scratch.find_visible(work.level, &bins, place, plan.samples);
-    let tests = AlphaTests { draws: &plan.draws, items: &plan.items, view: &plan.view };
+    let tests = AlphaTests::of(plan);
     let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
     scratch.find_cut_outs(work, &bins, place, &order, &tests);
     let within = [x, y].map(|c| (c & ((1 << shift) - 1)) as usize);

@@ -1,6 +1,7 @@
 //! What a frame cost and what it did.
 
-use super::geometry::{Bins, Counts};
+use super::geometry::Counts;
+use crate::plan::Plan;
 use std::time::Instant;
 
 /// Seconds and counts of one tile, or of all of them added up.
@@ -19,6 +20,12 @@ pub struct TileTimes {
 }
 
 impl TileTimes {
+    /// Seconds of everything.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.raster + self.shade + self.sky + self.resolve
+    }
+
     /// Adds another's.
     pub fn add(&mut self, o: &Self) {
         self.raster += o.raster;
@@ -41,8 +48,9 @@ pub struct Stats {
 }
 
 impl Stats {
-    pub(super) fn new(bins: &Bins, shaded: u64, shadow_maps: usize) -> Self {
-        Self { geometry: bins.counts, shaded, shadow_maps: shadow_maps as u64 }
+    pub(super) fn new(geometry: Counts, shaded: u64, plan: &Plan) -> Self {
+        let shadow_maps = plan.shadows.iter().map(|pass| pass.faces().len() as u64).sum();
+        Self { geometry, shaded, shadow_maps }
     }
 
     /// The entries of a `Render-Stats` header.
@@ -70,19 +78,16 @@ impl Timings {
         self.0.push((pass, milliseconds));
     }
 
-    /// Splits the wall time of the tile loop by its threads' time.
-    pub fn push_tiles(&mut self, wall_milliseconds: f64, times: &TileTimes) {
+    /// Notes the passes within tiles. `rate`: milliseconds that a second of the threads' time took.
+    pub fn push_tiles(&mut self, rate: f64, times: &TileTimes) {
         let parts = [
             ("raster", times.raster),
             ("shade", times.shade),
             ("sky", times.sky),
             ("resolve", times.resolve),
         ];
-        let total: f64 = parts.iter().map(|part| part.1).sum();
-        for (pass, seconds) in parts {
-            if seconds > 0.0 {
-                self.push(pass, wall_milliseconds * seconds / total);
-            }
+        for (pass, seconds) in parts.into_iter().filter(|part| part.1 > 0.0) {
+            self.push(pass, rate * seconds);
         }
     }
 

@@ -254,6 +254,19 @@ impl Plan {
             && self.items.iter().zip(&other.items).all(|(own, other)| own.places_the_triangles_of(other))
     }
 
+    /// Whether what every sample sees is the same as in `other`.
+    #[must_use]
+    pub fn looks_as(&self, other: &Self) -> bool {
+        let tests =
+            || self.draws.iter().zip(&other.draws).map(|(own, other)| (&own.alpha_test, &other.alpha_test));
+        self.samples == other.samples
+            && self.shows_the_triangles_of(other)
+            && tests().all(|tests| match tests {
+                (Some(own), Some(other)) => own.has_the_holes_of(other),
+                (own, other) => own.is_none() && other.is_none(),
+            })
+    }
+
     /// Strong entity tag of the picture, in quotes: a function of its inputs and the program's
     /// version alone.
     #[must_use]

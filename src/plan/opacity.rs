@@ -41,6 +41,18 @@ pub struct AlphaTest {
     pub probe: Surface,
 }
 
+impl AlphaTest {
+    /// Whether both decide the same.
+    #[must_use]
+    pub fn has_the_holes_of(&self, other: &Self) -> bool {
+        let alike = match (&self.probe.alpha, &other.probe.alpha) {
+            (Some(own), Some(other)) => own.is(other),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        alike && self.cutoff == other.cutoff
+    }
+}
+
 /// An alpha test of one item's triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct ItemTest<'a> {
@@ -127,6 +139,16 @@ impl Alpha {
         [self.opacity_map.as_ref(), self.diffuse_map.as_ref()].into_iter().flatten()
     }
 
+    /// Whether both are the same factors.
+    fn is(&self, other: &Self) -> bool {
+        let same = |own: &Option<Arc<Texture>>, other: &Option<Arc<Texture>>| {
+            own.as_ref().map(Arc::as_ptr) == other.as_ref().map(Arc::as_ptr)
+        };
+        self.opacity == other.opacity
+            && same(&self.opacity_map, &other.opacity_map)
+            && same(&self.diffuse_map, &other.diffuse_map)
+    }
+
     fn is_constant(&self) -> bool {
         self.maps().next().is_none()
     }
@@ -190,6 +212,22 @@ mod tests {
         assert_eq!((picture(&clear), solid(&clear)), (Some(Opacity::Blended), Some(Opacity::CutOut)));
         let cut = Material { alpha_cutoff: Some(0.2), ..clear };
         assert_eq!((picture(&cut), solid(&cut)), (Some(Opacity::CutOut), Some(Opacity::CutOut)));
+    }
+
+    #[test]
+    fn holes_are_those_of_a_map_and_a_cutoff() {
+        let test = |opacity_map: &Option<Arc<Texture>>, cutoff: f32| {
+            let material = Material {
+                opacity_map: opacity_map.clone(),
+                alpha_cutoff: Some(cutoff),
+                ..Material::default()
+            };
+            of_solid(&material).and_then(Transparency::into_test).unwrap()
+        };
+        let (red, copy) = (map(vec![[9, 0, 0, 255]]), map(vec![[9, 0, 0, 255]]));
+        assert!(test(&red, 0.5).has_the_holes_of(&test(&red, 0.5)));
+        assert!(!test(&red, 0.5).has_the_holes_of(&test(&red, 0.6)));
+        assert!(!test(&red, 0.5).has_the_holes_of(&test(&copy, 0.5)));
     }
 
     #[test]

@@ -4,68 +4,39 @@ mod colors;
 mod wireframe;
 
 pub use colors::{Row, encode_frame, encode_tile, write_radiance};
+pub use wireframe::draw as draw_wireframe;
 
 use super::geometry::Bins;
 use super::geometry::setup::Triangle;
-use super::samples;
 use super::tiles::cover::Region;
-use super::tiles::fragments::SampleOrder;
-use super::tiles::{self, AlphaTests, Scratch};
-use super::work::{Cancelled, Work};
+use super::tiles::fragments::Entry;
+use super::tiles::{Scratch, Tile};
 use crate::math::View;
 use crate::plan::{Draw, Plan};
 
-/// Draws a picture of 16-bit values.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn draw_values(plan: &Plan, bins: &Bins, pixels: &mut [u16], work: &Work) -> Result<(), Cancelled> {
+/// Writes a tile of 16-bit values: distances or instances.
+pub fn write_values(plan: &Plan, bins: &Bins, seen: &Scratch, tile: Tile<u16>) {
     let side = 1usize << bins.grid.tile_shift;
-    work.map(tiles::split(pixels, &bins.grid), Scratch::default, |scratch, tile| {
-        find_seen(plan, bins, tile.place, work, scratch);
-        let region = Region::of_tile(&bins.grid, tile.place[0], tile.place[1]);
-        for (y, row) in tile.rows.into_iter().enumerate() {
-            for (x, pixel) in row.iter_mut().enumerate() {
-                let seen = scratch.seen(y * side + x, bins);
-                *pixel = match plan.depth_range {
-                    Some(range) => distance_code(seen, region.centre([x, y]), &plan.view, range),
-                    None => instance_code(seen, &plan.draws),
-                };
-            }
+    let region = Region::of_tile(&bins.grid, tile.place[0], tile.place[1]);
+    for (y, row) in tile.rows.into_iter().enumerate() {
+        for (x, pixel) in row.iter_mut().enumerate() {
+            let seen = seen.seen(y * side + x, bins);
+            *pixel = match plan.depth_range {
+                Some(range) => distance_code(seen, region.centre([x, y]), &plan.view, range),
+                None => instance_code(seen, &plan.draws),
+            };
         }
-    })?;
-    Ok(())
+    }
 }
 
-/// Draws the edges of what each pixel sees.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn draw_wireframe(
-    plan: &Plan,
-    bins: &Bins,
-    pixels: &mut [[u8; 4]],
-    work: &Work,
-) -> Result<(), Cancelled> {
+/// Writes which triangle each pixel of a tile sees.
+pub fn write_entries(bins: &Bins, seen: &Scratch, tile: Tile<Option<Entry>>) {
     let side = 1usize << bins.grid.tile_shift;
-    let mut seen = vec![None; pixels.len()];
-    work.map(tiles::split(&mut seen, &bins.grid), Scratch::default, |scratch, tile| {
-        find_seen(plan, bins, tile.place, work, scratch);
-        for (y, row) in tile.rows.into_iter().enumerate() {
-            for (x, entry) in row.iter_mut().enumerate() {
-                *entry = scratch.entry(y * side + x);
-            }
+    for (y, row) in tile.rows.into_iter().enumerate() {
+        for (x, entry) in row.iter_mut().enumerate() {
+            *entry = seen.entry(y * side + x);
         }
-    })?;
-    wireframe::draw(&plan.view, bins, &seen, pixels, work)
-}
-
-/// Finds what the centre of each pixel of a tile sees.
-fn find_seen(plan: &Plan, bins: &Bins, place: [u32; 2], work: &Work, scratch: &mut Scratch) {
-    let tests = AlphaTests { draws: &plan.draws, items: &plan.items, view: &plan.view };
-    let order = SampleOrder { pattern: samples::pattern(1), nearest: &[0] };
-    scratch.find_visible(work.level, bins, place, 1);
-    scratch.find_cut_outs(work, bins, place, &order, &tests);
+    }
 }
 
 /// 65535 · (z − near) / (far − near) of the view-space distance z; 65535 for the background.

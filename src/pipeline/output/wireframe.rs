@@ -13,14 +13,14 @@ use crate::pipeline::work::{Cancelled, Work};
 const HALF_WIDTH: f64 = 128.0;
 
 /// Which triangle the centre of each pixel sees.
-pub(super) type Seen = [Option<Entry>];
+pub type Seen = [Option<Entry>];
 
 /// Draws white lines on black: a pixel is white where an edge passes within half a pixel of its centre,
 /// of the triangle seen there or of one that is seen beside it and not hidden there.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(super) fn draw(
+pub fn draw(
     view: &View,
     bins: &Bins,
     seen: &Seen,

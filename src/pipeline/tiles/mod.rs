@@ -23,7 +23,7 @@ use super::work::{Cancelled, Work};
 use super::{resolve, sky};
 use crate::math::View;
 use crate::math::simd::*;
-use crate::plan::{Draw, Item, ItemTest, Opacity};
+use crate::plan::{Draw, Item, ItemTest, Opacity, Plan};
 use blend::{Behind, Canvas};
 use cover::{BlockDepths, IdTarget, Region, Visibility};
 use fragments::{Entry, Fragments, SampleOrder, triangle};
@@ -122,20 +122,17 @@ pub struct Shared<'a> {
     pub background: sky::Background,
     /// Samples a pixel.
     pub samples: u32,
+    /// Them, from the nearest to the pixel's centre to the farthest.
+    pub nearest: Vec<usize>,
 }
 
-impl<'a> Shared<'a> {
+impl Shared<'_> {
     /// What the triangles of a draw look like.
     fn shader(&self, draw: u32) -> SurfaceShader<'_> {
         let draw = &self.draws[draw as usize];
         let (item, lighting) = (&self.items[draw.item as usize], &self.lighting);
         let source = Source::new(item, &draw.surface, &self.frames, lighting.view, lighting.anchor);
         SurfaceShader { source, lighting }
-    }
-
-    /// What decides on triangles with holes.
-    fn tests(&self) -> AlphaTests<'a> {
-        AlphaTests { draws: self.draws, items: self.items, view: self.lighting.view }
     }
 }
 
@@ -150,7 +147,13 @@ pub struct AlphaTests<'a> {
 }
 
 impl<'a> AlphaTests<'a> {
-    fn of(&self, draw: u32) -> ItemTest<'a> {
+    /// Those of a plan.
+    #[must_use]
+    pub fn of(plan: &'a Plan) -> Self {
+        Self { draws: &plan.draws, items: &plan.items, view: &plan.view }
+    }
+
+    fn test(&self, draw: u32) -> ItemTest<'a> {
         let draw = &self.draws[draw as usize];
         let test = draw.alpha_test.as_ref().expect("the plan gives every cut-out its test");
         ItemTest { item: &self.items[draw.item as usize], test }
@@ -203,7 +206,7 @@ impl Scratch {
             work,
             &tile,
             &self.cut_outs,
-            |draw| tests.of(draw),
+            |draw| tests.test(draw),
             tests.view,
             &mut self.samples,
             &self.blocks,
@@ -267,30 +270,55 @@ pub struct Resolved<'a> {
     pub side: usize,
 }
 
-/// Draws the tiles of a picture of colours. `write` takes each tile's colours to its rows.
+/// What is looked at: a tile's samples see the same for all outputs of it.
+pub struct Look<'a> {
+    /// The triangles.
+    pub bins: &'a Bins,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// What decides on those with holes.
+    pub tests: AlphaTests<'a>,
+}
+
+/// What one output makes of a tile, once it is known what its samples see.
+pub type TileTask<'a> = Box<dyn FnOnce(&mut Scratch, &Work) -> TileTimes + Send + 'a>;
+
+/// Looks at every tile once, and gives what its samples see to the task of each output. `outputs` has a
+/// task a tile for each of them, in the order of [`split`]. Returns each one's times; the look is on the
+/// first one's account.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn draw<P: Send>(
-    shared: &Shared,
-    tiles: Vec<Tile<P>>,
-    write: impl Fn(&Resolved, Tile<P>) + Sync,
-    work: &Work,
-) -> Result<TileTimes, Cancelled> {
-    let nearest = samples::nearest_to_centre(shared.samples);
-    let order = SampleOrder { pattern: samples::pattern(shared.samples), nearest: &nearest };
-    let times = work.map(tiles, Scratch::default, |scratch, tile| {
-        draw_tile(work, shared, &order, scratch, tile, &write)
+pub fn draw(look: &Look, outputs: Vec<Vec<TileTask>>, work: &Work) -> Result<Vec<TileTimes>, Cancelled> {
+    let grid = &look.bins.grid;
+    let nearest = samples::nearest_to_centre(look.samples);
+    let order = SampleOrder { pattern: samples::pattern(look.samples), nearest: &nearest };
+    let mut totals = vec![TileTimes::default(); outputs.len()];
+    let mut tiles: Vec<(u32, Vec<TileTask>)> = (0..grid.tiles()).map(|tile| (tile, Vec::new())).collect();
+    for tasks in outputs {
+        tiles.iter_mut().zip(tasks).for_each(|((_, tile), task)| tile.push(task));
+    }
+    let times = work.map(tiles, Scratch::default, |scratch, (tile, tasks)| {
+        let place = [tile % grid.columns, tile / grid.columns];
+        let mut clock = Clock::start();
+        scratch.find_visible(work.level, look.bins, place, look.samples);
+        scratch.find_cut_outs(work, look.bins, place, &order, &look.tests);
+        let look = TileTimes { raster: clock.lap(), ..TileTimes::default() };
+        let times: Vec<TileTimes> = tasks.into_iter().map(|task| task(scratch, work)).collect();
+        (look, times)
     })?;
-    let mut total = TileTimes::default();
-    times.iter().for_each(|t| total.add(t));
-    Ok(total)
+    for (look, tasks) in &times {
+        totals.iter_mut().take(1).for_each(|first| first.add(look));
+        totals.iter_mut().zip(tasks).for_each(|(total, task)| total.add(task));
+    }
+    Ok(totals)
 }
 
-fn draw_tile<P>(
+/// Shades what the samples of a tile see: fragments, sky, resolve, what is blended over them. `write` takes
+/// the colours to the tile's rows.
+pub fn shade<P>(
     work: &Work,
     shared: &Shared,
-    order: &SampleOrder,
     scratch: &mut Scratch,
     tile: Tile<P>,
     write: impl Fn(&Resolved, Tile<P>),
@@ -301,10 +329,9 @@ fn draw_tile<P>(
     let grid = &shared.bins.grid;
     let side = 1usize << grid.tile_shift;
     let region = Region::of_tile(grid, tile.place[0], tile.place[1]);
+    let order = SampleOrder { pattern: samples::pattern(shared.samples), nearest: &shared.nearest };
 
-    scratch.find_visible(level, shared.bins, tile.place, shared.samples);
-    scratch.find_cut_outs(work, shared.bins, tile.place, order, &shared.tests());
-    scratch.fragments.collect(level, &scratch.samples, &region, side, order, &scratch.list, shared.bins);
+    scratch.fragments.collect(level, &scratch.samples, &region, side, &order, &scratch.list, shared.bins);
     times.raster = clock.lap();
 
     scratch.colors.iter_mut().for_each(|channel| {
@@ -325,7 +352,7 @@ fn draw_tile<P>(
     times.resolve = clock.lap();
 
     if !scratch.blended.is_empty() {
-        times.add(&scratch.blend(work, shared, &region, order, alpha.as_deref_mut()));
+        times.add(&scratch.blend(work, shared, &region, &order, alpha.as_deref_mut()));
         clock.lap();
     }
     write(&Resolved { colors: &scratch.colors, alpha: alpha.as_deref(), side }, tile);
