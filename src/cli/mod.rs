@@ -10,6 +10,7 @@ mod serve;
 
 use clap::{Parser, Subcommand};
 use rasterd::settings::Settings;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// What a server reads from the environment alone.
@@ -51,10 +52,15 @@ pub fn run() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("rasterd: {failure}");
+            say(failure);
             ExitCode::FAILURE
         }
     }
+}
+
+/// Says something on standard error, if anybody still reads it.
+fn say(message: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "rasterd: {message}");
 }
 
 /// What standard error shows before exit code 1.

@@ -132,7 +132,7 @@ impl Render {
             Renderer::new(&settings).map_err(|error| Failure::new("cannot start threads", error))?;
         let scene = std::sync::Arc::new(renderer.build(|| new.compile(renderer.limits()))?);
         for warning in &scene.warnings {
-            eprintln!("rasterd: {}{}", place(warning), warning.detail);
+            super::say(format_args!("{}{}", place(warning), warning.detail));
         }
         let rendered = renderer.render_now(&scene, &request, product)?;
         self.out.write(&rendered.bytes).map_err(|error| Failure::new(&self.out, error))

@@ -106,6 +106,22 @@ fn bad_input_exits_1_with_the_servers_words() {
 }
 
 #[test]
+fn warnings_that_nobody_reads_stop_nothing() {
+    let model = format!("{TRIANGLE_OBJ}\nmtllib missing.mtl\n");
+    let folder = Folder::new("deaf", &[("m.obj", &model)]);
+    let warned = render(&folder, &["m.obj", "-o", "heard.png", "--width=8", "--height=8"]);
+    assert!(warned.status.success() && error(&warned).contains("missing.mtl"), "{}", error(&warned));
+    for arguments in [["m.obj", "-o", "deaf.png"], ["m.obj", "-o", "none/deaf.png"]] {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let mut command = rasterd();
+        command.arg("render").args(arguments).args(["--width=8", "--height=8"]);
+        let status = command.current_dir(&folder.0).stderr(writer).status().expect("a run");
+        assert_eq!(status.code(), Some(i32::from(arguments[2] == "none/deaf.png")), "{arguments:?}");
+    }
+}
+
+#[test]
 fn two_models_of_one_name_are_refused() {
     let folder = Folder::new("twice", &[("a.obj", TRIANGLE_OBJ)]);
     std::fs::create_dir_all(folder.0.join("d")).expect("a folder");
