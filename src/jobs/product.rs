@@ -122,8 +122,8 @@ impl Product {
     }
 
     /// Refuses more frames than fit the memory of one beside what `plans`, which are drawn together, take
-    /// to be drawn: the triangles of each pass over them are there to the last, the rest of a frame's memory
-    /// is free before the next.
+    /// to be drawn: the triangles of each pass over them once, and all else of every frame, since those that
+    /// share a look at the tiles are under way together.
     pub(super) fn check_memory(
         &self,
         scene: &Scene,
@@ -136,7 +136,8 @@ impl Product {
         };
         let passes = plans.iter().enumerate().filter(is_pass);
         let geometry = passes.fold(0u64, |sum, (_, plan)| sum.saturating_add(plan.geometry_bytes()));
-        let rest = plans.iter().map(|plan| plan.bytes() - plan.geometry_bytes()).max().unwrap_or(0);
+        let rests = plans.iter().map(|plan| plan.bytes() - plan.geometry_bytes());
+        let rest = rests.fold(0u64, u64::saturating_add);
         let held = self.held_bytes(scene, request);
         check_bytes(held.saturating_add(geometry).saturating_add(rest), limits)
     }
