@@ -330,6 +330,13 @@ impl Scene {
         self.instances.iter().enumerate().filter(|(_, instance)| instance.visible)
     }
 
+    /// Whether its pictures change with time.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        let turns = |instance: &Instance| instance.spin.is_some_and(|spin| spin.deg_per_s != 0.0);
+        self.camera.orbit_deg_per_s != 0.0 || self.visible().any(|(_, instance)| turns(instance))
+    }
+
     /// Around all visible instances at time `t`, anchored; `None` if nothing can be seen.
     #[must_use]
     pub fn bounds(&self, t: f64) -> Option<Bounds> {

@@ -294,3 +294,16 @@ fn linear_checkers_hold_the_numbers_as_written() {
     let texture = scene.materials[1].diffuse_map.clone().unwrap();
     assert_eq!(texture.image.texels[0], [51, 51, 51, 255]);
 }
+
+#[test]
+fn a_scene_moves_if_its_camera_or_what_is_seen_turns() {
+    let turning = |deg: f64, visible: bool| {
+        scene(&cornered(
+            json!({"mesh": "m", "visible": visible, "spin": {"axis": [0, 1, 0], "deg_per_s": deg}}),
+        ))
+    };
+    assert!(turning(10.0, true).moves());
+    assert!(!turning(0.0, true).moves() && !turning(10.0, false).moves());
+    assert!(scene(&json!({"camera": {"orbit_deg_per_s": 1}})).moves());
+    assert!(!scene(&json!({})).moves());
+}

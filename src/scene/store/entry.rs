@@ -78,7 +78,7 @@ pub struct Entry {
     pub created: SystemTime,
     pub(super) assets: Arc<Assets>,
     /// Tells scenes apart that had the same id one after the other.
-    pub(super) incarnation: u64,
+    pub incarnation: u64,
 }
 
 impl Entry {

@@ -4,6 +4,9 @@
 //! looking entries up and putting them in, never a compilation, so that readers do not wait for a
 //! large upload. Two changes at once both take effect: the one that comes second finds that the
 //! entry it started from is gone, and is made again on top of the new one.
+//!
+//! Each scene is a channel whose value is its version now; who watches it hears of the next one, and of
+//! its end.
 
 mod entry;
 
@@ -18,6 +21,7 @@ use std::collections::BTreeMap;
 use std::hash::{BuildHasher, RandomState};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::SystemTime;
+use tokio::sync::watch;
 
 /// Why the store did not do as asked. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -41,11 +45,14 @@ pub enum StoreError {
     Scene(#[from] SceneError),
 }
 
+/// Scenes by id.
+type Entries = BTreeMap<String, watch::Sender<Entry>>;
+
 /// All scenes.
 #[derive(Debug)]
 pub struct Store {
     limits: Limits,
-    entries: RwLock<BTreeMap<String, Entry>>,
+    entries: RwLock<Entries>,
     /// Random per store: ids can't be guessed, and versions of one run are not those of another.
     random: RandomState,
 }
@@ -60,13 +67,20 @@ impl Store {
     /// The scene `id` as it is now.
     #[must_use]
     pub fn get(&self, id: &str) -> Option<Entry> {
-        self.read().get(id).cloned()
+        now(&self.read(), id)
+    }
+
+    /// The versions of the scene `id` from now on: the channel closes when it is removed. A scene that
+    /// gets the same id later has another one.
+    #[must_use]
+    pub fn watch(&self, id: &str) -> Option<watch::Receiver<Entry>> {
+        self.read().get(id).map(watch::Sender::subscribe)
     }
 
     /// All scenes in order of id.
     #[must_use]
     pub fn list(&self) -> Vec<Entry> {
-        self.read().values().cloned().collect()
+        self.read().values().map(|versions| versions.borrow().clone()).collect()
     }
 
     /// Keeps `new` under an id of its own.
@@ -104,11 +118,11 @@ impl Store {
             let (document, compiled) = new.build(&files, assets, &self.limits)?;
             let draft = Draft::of(&document, compiled, files);
             let mut entries = self.write();
-            let now = entries.get(id);
+            let now = now(&entries, id);
             // What is replaced does not matter to the new scene but for files that stay; it does to
             // the precondition.
-            precondition.check(now)?;
-            if new.files.is_none() && !same_files(before.as_ref(), now) {
+            precondition.check(now.as_ref())?;
+            if new.files.is_none() && !same_files(before.as_ref(), now.as_ref()) {
                 continue;
             }
             let is_new = now.is_none();
@@ -162,8 +176,8 @@ impl Store {
     /// [`StoreError::NotFound`] and [`StoreError::PreconditionFailed`].
     pub fn delete(&self, id: &str, precondition: &Precondition) -> Result<(), StoreError> {
         let mut entries = self.write();
-        let entry = entries.get(id).ok_or(StoreError::NotFound)?;
-        precondition.check(Some(entry))?;
+        let entry = now(&entries, id).ok_or(StoreError::NotFound)?;
+        precondition.check(Some(&entry))?;
         entries.remove(id);
         Ok(())
     }
@@ -196,24 +210,21 @@ impl Store {
             precondition.check(Some(&before))?;
             let draft = make(&before)?;
             let mut entries = self.write();
-            if entries.get(id).is_some_and(|now| now.is_version(&before)) {
+            if now(&entries, id).is_some_and(|now| now.is_version(&before)) {
                 return self.insert(&mut entries, id, draft);
             }
         }
     }
 
-    fn insert(
-        &self,
-        entries: &mut BTreeMap<String, Entry>,
-        id: &str,
-        draft: Draft,
-    ) -> Result<Entry, StoreError> {
-        let others: u64 = entries.values().filter(|entry| entry.id != id).map(|entry| entry.bytes).sum();
+    fn insert(&self, entries: &mut Entries, id: &str, draft: Draft) -> Result<Entry, StoreError> {
+        let others = entries.iter().filter(|(other, _)| *other != id);
+        let others: u64 = others.map(|(_, versions)| versions.borrow().bytes).sum();
         let (limit, value) = (self.limits.total_bytes, others.saturating_add(draft.bytes));
         if value > limit {
             return Err(StoreError::Full { limit, value });
         }
-        let before = entries.get(id);
+        let before = now(entries, id);
+        let before = before.as_ref();
         let created = before.map_or_else(SystemTime::now, |entry| entry.created);
         let incarnation =
             before.map_or_else(|| self.random.hash_one((id, created)), |entry| entry.incarnation);
@@ -230,11 +241,14 @@ impl Store {
             assets: Arc::new(draft.assets),
             incarnation,
         };
-        entries.insert(id.to_owned(), entry.clone());
+        match entries.get(id) {
+            Some(versions) => drop(versions.send_replace(entry.clone())),
+            None => drop(entries.insert(id.to_owned(), watch::Sender::new(entry.clone()))),
+        }
         Ok(entry)
     }
 
-    fn unused_id(&self, entries: &BTreeMap<String, Entry>) -> String {
+    fn unused_id(&self, entries: &Entries) -> String {
         let candidates = (0_u64..)
             .map(|n| format!("{:016x}", self.random.hash_one((entries.len(), SystemTime::now(), n))));
         let mut unused = candidates.filter(|id| !entries.contains_key(id));
@@ -243,13 +257,18 @@ impl Store {
 
     // A panic while the lock is held leaves the map whole: every change of it is one insertion or
     // removal. So a poisoned lock is as good as any.
-    fn read(&self) -> RwLockReadGuard<'_, BTreeMap<String, Entry>> {
+    fn read(&self) -> RwLockReadGuard<'_, Entries> {
         self.entries.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn write(&self) -> RwLockWriteGuard<'_, BTreeMap<String, Entry>> {
+    fn write(&self) -> RwLockWriteGuard<'_, Entries> {
         self.entries.write().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// The version of `id` that is there now.
+fn now(entries: &Entries, id: &str) -> Option<Entry> {
+    entries.get(id).map(|versions| versions.borrow().clone())
 }
 
 /// Whether two versions of a scene, or none, have the same files.

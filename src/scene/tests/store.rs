@@ -221,3 +221,19 @@ fn nothing_to_make_a_scene_of_is_a_fault() {
     let error = store().create(NewScene::default()).unwrap_err();
     assert!(matches!(error, StoreError::Scene(SceneError::Document(_))), "{error}");
 }
+
+#[test]
+fn who_watches_a_scene_sees_its_versions_and_its_end() {
+    let store = store();
+    let id = store.create(new(json!({}))).unwrap().id;
+    let mut versions = store.watch(&id).unwrap();
+    assert!(!versions.has_changed().unwrap());
+    store.patch(&id, &json!({"name": "x"}), &Precondition::None).unwrap();
+    assert!(store.patch(&id, &json!({"camera": 1}), &Precondition::None).is_err());
+    assert_eq!(versions.borrow_and_update().revision, 2);
+
+    store.delete(&id, &Precondition::None).unwrap();
+    store.put(&id, new(json!({})), &Precondition::None).unwrap();
+    assert!(versions.has_changed().is_err(), "a scene of the same id is another one");
+    assert!(store.watch("none").is_none());
+}
