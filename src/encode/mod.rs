@@ -22,7 +22,7 @@ pub use format::{Animation, Format, Unfit};
 pub use frame_json::frame_json;
 pub use gif::gif;
 pub use hdr::hdr;
-pub use jpeg::jpeg;
+pub use jpeg::{jpeg, jpeg_with_comment};
 pub use png::png;
 pub use webp::webp;
 pub use zip::Zip;

@@ -5,6 +5,7 @@ use super::tables::{CHROMA, HuffmanSpec, LUMA, Quantization, ZIGZAG};
 
 const START_OF_IMAGE: u8 = 0xD8;
 const APPLICATION_0: u8 = 0xE0;
+const COMMENT: u8 = 0xFE;
 const QUANTIZATION_TABLES: u8 = 0xDB;
 const BASELINE_FRAME: u8 = 0xC0;
 const HUFFMAN_TABLES: u8 = 0xC4;
@@ -20,10 +21,11 @@ pub(super) fn restart(at: usize) -> [u8; 2] {
     [0xFF, RESTART | at.to_le_bytes()[0] & 7]
 }
 
-/// Everything before the first strip. `size` is width and height, a restart comes after every
-/// `interval` coded units.
+/// Everything before the first strip. `size` is width and height, an empty comment is left out, a restart
+/// comes after every `interval` coded units.
 pub(super) fn headers(
     size: [u32; 2],
+    comment: &str,
     chroma: Chroma,
     quantization: &Quantization,
     interval: usize,
@@ -31,6 +33,9 @@ pub(super) fn headers(
     let mut bytes = vec![0xFF, START_OF_IMAGE];
     // Version 1.1, square pixels, no thumbnail.
     segment(&mut bytes, APPLICATION_0, b"JFIF\0\x01\x01\0\0\x01\0\x01\0\0");
+    if !comment.is_empty() {
+        segment(&mut bytes, COMMENT, comment.as_bytes());
+    }
     for (table, steps) in [(0, &quantization.luma), (1, &quantization.chroma)] {
         let mut content = vec![table];
         content.extend(ZIGZAG.map(|at| steps[usize::from(at)]));

@@ -53,6 +53,22 @@ impl Chroma {
 /// # Panics
 /// For other pixels.
 pub fn jpeg(frame: &Frame, quality: u8, work: &Work) -> Result<Vec<u8>, Cancelled> {
+    jpeg_with_comment(frame, quality, "", work)
+}
+
+/// The same with a comment in it, unless that is empty: a line of at most 1000 bytes.
+///
+/// # Errors
+/// As [`jpeg`].
+///
+/// # Panics
+/// As [`jpeg`], and for a comment that is too long.
+pub fn jpeg_with_comment(
+    frame: &Frame,
+    quality: u8,
+    comment: &str,
+    work: &Work,
+) -> Result<Vec<u8>, Cancelled> {
     let (pixels, opaque) = colors(frame);
     let width = frame.width as usize;
     let chroma = if quality < FULL_CHROMA_QUALITY { Chroma::Quarter } else { Chroma::Full };
@@ -68,7 +84,7 @@ pub fn jpeg(frame: &Frame, quality: u8, work: &Work) -> Result<Vec<u8>, Cancelle
     )?;
 
     let units = width.div_ceil(chroma.unit()) * (STRIP_ROWS / chroma.unit());
-    let mut bytes = headers([frame.width, frame.height], chroma, &quantization, units);
+    let mut bytes = headers([frame.width, frame.height], comment, chroma, &quantization, units);
     for (at, strip) in strips.iter().enumerate() {
         if at > 0 {
             bytes.extend(restart(at - 1));

@@ -54,6 +54,17 @@ fn strips_join_to_the_picture() {
 }
 
 #[test]
+fn a_comment_is_a_segment_and_nothing_else() {
+    let frame = frame(40, 30);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let mut commented = jpeg_with_comment(&frame, 80, "frame=7", &work).unwrap();
+    // Behind the start of the image and the JFIF segment, which must come first.
+    assert_eq!(commented.drain(20..31).collect::<Vec<_>>(), b"\xFF\xFE\0\x09frame=7");
+    assert_eq!(commented, jpeg(&frame, 80, &work).unwrap());
+}
+
+#[test]
 fn the_bytes_do_not_depend_on_threads() {
     let frame = frame(100, 200);
     let expected = encode(&frame, 80, 1);
