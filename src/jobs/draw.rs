@@ -1,9 +1,10 @@
 //! The stages after the request: plan → pipeline → encode, for every frame of a product.
 
+use super::counters::Counter;
 use super::product::{FileTag, Product, Rendered};
 use super::shift::Shift;
 use super::{Engine, JobError};
-use crate::encode::{self, Animation, Zip};
+use crate::encode::{self, Animation, Format, Zip};
 use crate::pipeline::{Cancelled, Frame, Work};
 use crate::plan::{self, FrameRequest, Output, Plan, PlanError};
 use crate::scene::Scene;
@@ -48,6 +49,34 @@ pub(super) fn make(
         Product::Archive { outputs } => making.archive(&requests, outputs)?,
     };
     Ok(making.finish(bytes, product.content_type()))
+}
+
+/// A frame before it is encoded.
+#[derive(Debug)]
+pub(super) struct Drawn {
+    pub frame: Frame,
+    /// Milliseconds: `plan` and the passes.
+    pub timings: Vec<(&'static str, f64)>,
+    /// Counts, by the names of `Render-Stats`.
+    pub stats: Vec<(&'static str, u64)>,
+}
+
+/// The part of [`make`] before the encoding, for a stream.
+pub(super) fn draw_one(
+    engine: &Engine,
+    scene: &Arc<Scene>,
+    request: &FrameRequest,
+    format: Format,
+    work: Work<'_>,
+) -> Result<Drawn, JobError> {
+    let product = Product::Still(format);
+    let requests = product.requests(scene, request, &engine.limits)?;
+    let mut making = Making::new(engine, scene, &product, work, None);
+    making.counter = &engine.counters.stream_frames;
+    let frame = making.frame(&requests[0])?;
+    let mut timings = vec![("plan", milliseconds(making.planning))];
+    timings.extend(making.passes);
+    Ok(Drawn { frame, timings, stats: making.stats })
 }
 
 /// The tag of what [`make`] makes, without making it.
@@ -98,6 +127,7 @@ struct Making<'a> {
     product: &'a Product,
     work: Work<'a>,
     shift: Option<&'a mut Shift>,
+    counter: &'a Counter,
     frames: u32,
     began: Instant,
     waiting: Duration,
@@ -124,6 +154,7 @@ impl<'a> Making<'a> {
             product,
             work,
             shift,
+            counter: &engine.counters.frames,
             frames: 0,
             began: Instant::now(),
             waiting: Duration::ZERO,
@@ -179,6 +210,7 @@ impl<'a> Making<'a> {
         let began = Instant::now();
         let frames = (self.engine.draw)(plans, &self.work)?;
         self.drawing += began.elapsed();
+        self.counter.add(1);
         for frame in &frames {
             frame.timings.iter().for_each(|(pass, ms)| *entry(&mut self.passes, pass) += ms);
             frame.stats.entries().iter().for_each(|(name, count)| *entry(&mut self.stats, name) += count);

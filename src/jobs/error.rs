@@ -6,7 +6,7 @@ use crate::plan::PlanError;
 use std::time::Duration;
 
 /// Why a job gave no picture.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum JobError {
     /// The request does not fit the scene or the limits.
     #[error("the frame cannot be planned")]

@@ -3,8 +3,12 @@
 //! In: a scene, a [`FrameRequest`] and the [`Product`] to make of it. Out: a finished file, or why there
 //! is none. A job waits in a bounded [`Queue`], then runs on a thread of its own that drives the shared
 //! pool; a frame's deadline and the caller that goes away both set the flag that the tile loop reads.
+//!
+//! [`Streams`] draw again and again while someone watches, each frame with a turn of its own.
 
+mod broadcast;
 mod cancel;
+mod counters;
 mod draw;
 mod error;
 mod product;
@@ -12,12 +16,15 @@ mod queue;
 mod shift;
 
 pub use crate::encode::{Animation, Format};
+pub use broadcast::{News, Picture, StreamRequest, Streams, Watcher};
 pub(crate) use cancel::CancelOnDrop;
+pub use counters::{Counter, Counters};
 pub use draw::Draw;
 pub use error::JobError;
 pub use product::{Product, Rendered};
 pub use queue::{Queue, QueueDepth};
 
+use crate::encode;
 use crate::limits::Limits;
 use crate::pipeline::{self, Hit, Work};
 use crate::plan::Output;
@@ -25,7 +32,10 @@ use crate::plan::request::{Elide, QueryFault};
 use crate::plan::{FrameRequest, Plan, PlanError};
 use crate::scene::Scene;
 use crate::settings::{Machine, Settings, Simd};
+use bytes::Bytes;
+use draw::Drawn;
 use fearless_simd::Level;
+use queue::Kind;
 use shift::{Clock, Shift};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -43,6 +53,18 @@ pub struct Renderer {
     deadline: Duration,
 }
 
+/// What a stream's frames are encoded as.
+const LIVE_FORMAT: Format = Format::Jpeg { quality: Format::DEFAULT_QUALITY };
+
+/// A frame of a stream as it is sent.
+#[derive(Debug)]
+struct Encoded {
+    jpeg: Bytes,
+    size: [u32; 2],
+    timings: Vec<(&'static str, f64)>,
+    stats: Vec<(&'static str, u64)>,
+}
+
 /// What every job shares.
 struct Engine {
     pool: rayon::ThreadPool,
@@ -52,6 +74,7 @@ struct Engine {
     elide: Elide,
     limits: Limits,
     draw: Box<Draw>,
+    counters: Counters,
 }
 
 impl Renderer {
@@ -89,6 +112,12 @@ impl Renderer {
         &self.engine.limits
     }
 
+    /// What has happened so far.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        &self.engine.counters
+    }
+
     /// Threads that draw.
     #[must_use]
     pub fn threads(&self) -> usize {
@@ -108,7 +137,8 @@ impl Renderer {
         product: impl Into<Product>,
     ) -> Result<Rendered, JobError> {
         let product = product.into();
-        self.run(product.is_series(), move |engine, cancel, shift| {
+        let kind = if product.is_series() { Kind::Series } else { Kind::Single };
+        self.run(kind, move |engine, cancel, shift| {
             let mut rendered = engine.render(&scene, &request, product, cancel, Some(shift))?;
             rendered.add_wait(shift.waited());
             Ok(rendered)
@@ -127,7 +157,7 @@ impl Renderer {
         x: u32,
         y: u32,
     ) -> Result<Option<Hit>, JobError> {
-        self.run(false, move |engine, cancel, _| engine.pick(&scene, &request, x, y, cancel)).await
+        self.run(Kind::Single, move |engine, cancel, _| engine.pick(&scene, &request, x, y, cancel)).await
     }
 
     /// The ETag that [`Renderer::render`] would answer with, without drawing and without a turn in
@@ -164,6 +194,40 @@ impl Renderer {
         self.engine.builders.install(task)
     }
 
+    /// Draws what `settle` asks for when the turn of a stream comes, and gives back what that was for: what a
+    /// stream shows next is settled as late as can be. A place in the queue is waited for.
+    async fn draw_live<T: Send + 'static>(
+        &self,
+        settle: impl FnOnce() -> (Arc<Scene>, FrameRequest, T) + Send + 'static,
+    ) -> Result<(Drawn, T), JobError> {
+        self.run(Kind::Stream, move |engine, cancel, shift| {
+            let (scene, request, purpose) = settle();
+            let format = LIVE_FORMAT.with_quality(request.quality);
+            let mut drawn = draw::draw_one(engine, &scene, &request, format, engine.work(cancel))?;
+            drawn.timings.insert(0, ("queue", draw::milliseconds(shift.waited())));
+            Ok((drawn, purpose))
+        })
+        .await
+    }
+
+    /// The JPEG of a frame of a stream. It needs no turn: there is one for each frame that had one.
+    async fn encode_live(&self, drawn: Drawn, quality: u8, comment: String) -> Result<Encoded, JobError> {
+        let cancel = CancelOnDrop::default();
+        let flag = cancel.flag();
+        let engine = Arc::clone(&self.engine);
+        let job = tokio::task::spawn_blocking(move || {
+            caught(|| {
+                let began = Instant::now();
+                let Drawn { frame, mut timings, stats } = drawn;
+                let work = engine.work(&flag);
+                let jpeg = encode::jpeg_with_comment(&frame, quality, &comment, &work)?;
+                timings.push(("encode", draw::milliseconds(began.elapsed())));
+                Ok(Encoded { jpeg: jpeg.into(), size: [frame.width, frame.height], timings, stats })
+            })
+        });
+        job.await.map_err(|_| JobError::Panicked)?
+    }
+
     /// Makes a file on this thread, now: the same bytes without queue and deadline.
     ///
     /// # Errors
@@ -178,16 +242,18 @@ impl Renderer {
         caught(|| self.engine.render(scene, request, product, &AtomicBool::new(false), None))
     }
 
-    /// Runs `task` on a blocking thread when its turn comes, the first of a series or the only one. Dropping
-    /// the returned future cancels it. The turn ends with the task itself, not with the caller's patience.
+    /// Runs `task` on a blocking thread when its turn comes, the first of a series or the only one. Dropping the
+    /// returned future cancels it. The turn ends with the task itself, not with the caller's patience.
     async fn run<T: Send + 'static>(
         &self,
-        is_series: bool,
+        kind: Kind,
         task: impl FnOnce(&Engine, &AtomicBool, &mut Shift) -> Result<T, JobError> + Send + 'static,
     ) -> Result<T, JobError> {
         let arrived = Instant::now();
+        // Not within the deadline: many streams are slow streams, and none of them fails for that.
+        let line = self.queue.line_up(kind).await?;
         let clock = Arc::new(Clock::start(self.deadline));
-        let turn = clock.wait(self.queue.turn(is_series)).await??;
+        let turn = clock.wait(self.queue.turn(line)).await??;
         let mut shift = Shift::new(turn, Arc::clone(&clock), arrived.elapsed());
 
         let cancel = CancelOnDrop::default();
@@ -202,7 +268,15 @@ impl Engine {
     fn new(machine: &Machine, limits: Limits, draw: Box<Draw>) -> std::io::Result<Self> {
         let (pool, builders) = (pool(machine, "draw")?, pool(machine, "build")?);
         let level = machine.simd.unwrap_or_else(Simd::best).level();
-        Ok(Self { pool, builders, level, elide: machine.elide.clone(), limits, draw })
+        Ok(Self {
+            pool,
+            builders,
+            level,
+            elide: machine.elide.clone(),
+            limits,
+            draw,
+            counters: Counters::default(),
+        })
     }
 
     fn plan(&self, scene: &Arc<Scene>, request: &FrameRequest) -> Result<Plan, PlanError> {

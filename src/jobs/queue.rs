@@ -3,6 +3,10 @@
 //! A series of frames gives its turn back after each, and goes to the end of those who wait: what it
 //! takes does not keep single frames from their turn. It keeps its frames meanwhile; so only as many
 //! series are under way as jobs may run.
+//!
+//! Streams draw for ever. Their frames line up among themselves first, and come in only as many at a time as
+//! leave a slot for others: however many streams there are, a single frame finds a place, and a turn after
+//! those before it.
 
 use super::JobError;
 use std::sync::Arc;
@@ -17,8 +21,28 @@ pub struct Queue {
     slots: Arc<Semaphore>,
     /// One permit for each series that may be under way.
     series: Arc<Semaphore>,
+    /// One permit for each frame of a stream that may be here.
+    streams: Arc<Semaphore>,
     running: usize,
     waiting: usize,
+}
+
+/// What a turn is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// One frame.
+    Single,
+    /// The first of several frames.
+    Series,
+    /// The next frame of a stream.
+    Stream,
+}
+
+/// The right to ask for a turn.
+#[derive(Debug)]
+pub(super) struct Line {
+    kind: Kind,
+    share: Option<OwnedSemaphorePermit>,
 }
 
 /// How full a queue is.
@@ -35,7 +59,7 @@ pub struct QueueDepth {
 pub(super) struct Turn {
     slots: Arc<Semaphore>,
     slot: Option<OwnedSemaphorePermit>,
-    _series: Option<OwnedSemaphorePermit>,
+    _share: Option<OwnedSemaphorePermit>,
     _place: OwnedSemaphorePermit,
 }
 
@@ -65,25 +89,46 @@ impl Queue {
             places: Arc::new(Semaphore::new(running + places)),
             slots: Arc::new(Semaphore::new(running)),
             series: Arc::new(Semaphore::new(running)),
+            streams: Arc::new(Semaphore::new(running.saturating_sub(1).max(1))),
             running,
             waiting: places,
         }
     }
 
-    /// Waits for a turn; `is_series`: for the first of several.
+    /// Where a frame of a stream stands in line with those of other streams, before it comes in. Others
+    /// come in as they are.
     ///
     /// # Errors
-    /// [`JobError::Full`] and [`JobError::Closing`], both at once, never after a wait.
-    pub(super) async fn turn(&self, is_series: bool) -> Result<Turn, JobError> {
-        let place = Arc::clone(&self.places).try_acquire_owned().map_err(|_| self.refusal())?;
-        let series = if is_series { Some(permit(&self.series).await?) } else { None };
+    /// [`JobError::Closing`]
+    pub(super) async fn line_up(&self, kind: Kind) -> Result<Line, JobError> {
+        let share = if kind == Kind::Stream { Some(permit(&self.streams).await?) } else { None };
+        Ok(Line { kind, share })
+    }
+
+    /// Waits for a turn.
+    ///
+    /// # Errors
+    /// [`JobError::Full`] and [`JobError::Closing`], both at once, never after a wait. A frame of a stream
+    /// finds no queue full, it waits; while it does, the queue may close.
+    pub(super) async fn turn(&self, Line { kind, share }: Line) -> Result<Turn, JobError> {
+        let place = match kind {
+            Kind::Single | Kind::Series => self.place()?,
+            Kind::Stream => permit(&self.places).await?,
+        };
+        let share = if kind == Kind::Series { Some(permit(&self.series).await?) } else { share };
         let slot = Some(permit(&self.slots).await?);
-        Ok(Turn { slots: Arc::clone(&self.slots), slot, _series: series, _place: place })
+        Ok(Turn { slots: Arc::clone(&self.slots), slot, _share: share, _place: place })
+    }
+
+    /// A place now, or none.
+    fn place(&self) -> Result<OwnedSemaphorePermit, JobError> {
+        Arc::clone(&self.places).try_acquire_owned().map_err(|_| self.refusal())
     }
 
     /// Takes no more jobs. Those that run or wait keep their place.
     pub fn close(&self) {
         self.places.close();
+        self.streams.close();
     }
 
     /// How full it is.
