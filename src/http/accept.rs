@@ -7,14 +7,23 @@ use axum::http::{HeaderMap, StatusCode};
 /// Refuses with 406 a client that says it takes no `essence` (`image/png`). Without `Accept` it takes
 /// anything.
 pub(super) fn check(headers: &HeaderMap, essence: &str) -> Result<(), Problem> {
-    let lines = headers.get_all(ACCEPT).into_iter().filter_map(|line| line.to_str().ok());
-    let ranges: Vec<&str> =
-        lines.flat_map(|line| line.split(',')).map(str::trim).filter(|r| !r.is_empty()).collect();
+    let ranges: Vec<&str> = ranges(headers).collect();
     if ranges.is_empty() || quality(&ranges, essence) > 0.0 {
         return Ok(());
     }
     let detail = format!("this path answers with {essence}, which Accept leaves out");
     Err(Problem::new(StatusCode::NOT_ACCEPTABLE, detail))
+}
+
+/// Whether a range of `kind` (`image`) is named, as browsers do that load a picture.
+pub(super) fn names(headers: &HeaderMap, kind: &str) -> bool {
+    ranges(headers).any(|range| range.split_once('/').is_some_and(|(of, _)| of.eq_ignore_ascii_case(kind)))
+}
+
+/// The ranges of a list header.
+fn ranges(headers: &HeaderMap) -> impl Iterator<Item = &str> {
+    let lines = headers.get_all(ACCEPT).into_iter().filter_map(|line| line.to_str().ok());
+    lines.flat_map(|line| line.split(',')).map(str::trim).filter(|range| !range.is_empty())
 }
 
 /// The quality that the most specific matching range gives; 0 if none matches.
@@ -56,6 +65,15 @@ mod tests {
             assert!(takes_png(accept), "{accept}");
         }
         assert!(check(&HeaderMap::new(), "image/png").is_ok());
+    }
+
+    #[test]
+    fn a_kind_is_named_by_any_of_its_ranges() {
+        let names_images = |accept: &'static str| {
+            names(&HeaderMap::from_iter([(ACCEPT, HeaderValue::from_static(accept))]), "image")
+        };
+        assert!(names_images("text/html, image/avif;q=0.9, */*") && names_images("image/*"));
+        assert!(!names_images("*/*") && !names_images("text/html") && !names_images(""));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! One connection, from its first request to its last byte.
 
+use super::link::{Link, Shallow};
 use super::patience::Patient;
 use super::problem::Problem;
 use super::reticent::{Replies, ReplyBody, Reticent};
@@ -54,8 +55,9 @@ impl Connection {
         // A small reply must not wait for an acknowledgement. It works without, so a refusal is no
         // matter.
         let _ = stream.set_nodelay(true);
-        let replies = Replies::default();
-        let service = service_fn(|request| answer(self.router.clone(), &replies, request));
+        let (replies, link) = (Replies::default(), Link::default());
+        let service = service_fn(|request| answer(self.router.clone(), &replies, &link, request));
+        let stream = Shallow::new(stream, link.clone());
         let stream = Reticent::new(Patient::new(stream, self.patience), replies.clone());
         let stream = TokioIo::new(stream);
         let mut connection = self.http.serve_connection(stream, service);
@@ -67,7 +69,15 @@ impl Connection {
         }
         let ended = match ended {
             Some(result) => result,
-            None => poll_fn(|context| connection.poll_without_shutdown(context)).await,
+            None => {
+                let end = poll_fn(|context| connection.poll_without_shutdown(context));
+                // A stream is over as it is; who has not taken its last picture by now won't.
+                let patience = if link.is_live() { LINGER } else { Duration::MAX };
+                match tokio::time::timeout(patience, end).await {
+                    Ok(result) => result,
+                    Err(_) => return,
+                }
+            }
         };
 
         let parts = connection.into_parts();
@@ -78,7 +88,7 @@ impl Connection {
             Err(error) if stream.has_kept_back() => Some(no_request(error)),
             _ => None,
         };
-        let stream = stream.into_inner().into_inner();
+        let stream = stream.into_inner().into_inner().into_inner();
         match (ended, refusal) {
             (_, Some(problem)) => refuse(stream, &problem).await,
             (Ok(()), None) if !self.closing.is_cancelled() => close_gently(stream).await,
@@ -127,8 +137,10 @@ async fn refuse(mut stream: TcpStream, problem: &Problem) {
 type Answer = Pin<Box<dyn Future<Output = Result<Response<ReplyBody>, Infallible>> + Send>>;
 
 /// Boxed, because only a movable future lets the connection be taken apart at its end.
-fn answer(router: Router, replies: &Replies, request: hyper::Request<Incoming>) -> Answer {
+fn answer(router: Router, replies: &Replies, link: &Link, request: hyper::Request<Incoming>) -> Answer {
     let reply = replies.begin();
-    let request: Request = request.map(axum::body::Body::new);
+    link.begin();
+    let mut request: Request = request.map(axum::body::Body::new);
+    request.extensions_mut().insert(link.clone());
     Box::pin(async move { Ok(router.oneshot(request).await?.map(|body| reply.with(body))) })
 }

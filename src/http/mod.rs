@@ -14,6 +14,8 @@ mod files;
 mod frames;
 mod gallery;
 mod guard;
+mod link;
+mod metrics;
 mod observe;
 mod openapi;
 mod page;
@@ -26,12 +28,13 @@ mod reticent;
 mod scenes;
 pub mod serve;
 mod service;
+mod streams;
 mod turntables;
 
 pub use body::{json, sniffed};
 pub use problem::Problem;
 
-use crate::jobs::Renderer;
+use crate::jobs::{Renderer, Streams};
 use crate::scene::store::{Entry, Store};
 use crate::settings::Settings;
 use axum::Router;
@@ -51,6 +54,8 @@ pub struct App {
     pub store: Arc<Store>,
     /// Draws frames.
     pub renderer: Renderer,
+    /// Draw again and again.
+    pub streams: Streams,
     /// As the server was started.
     pub settings: Arc<Settings>,
     ready: Arc<AtomicBool>,
@@ -62,15 +67,17 @@ impl App {
     pub fn new(settings: Settings, renderer: Renderer) -> Self {
         Self {
             store: Arc::new(Store::new(settings.limits())),
+            streams: Streams::new(renderer.clone()),
             renderer,
             settings: Arc::new(settings),
             ready: Arc::new(AtomicBool::new(true)),
         }
     }
 
-    /// From now on `/readyz` says no and no new frame is taken; those under way are finished.
+    /// From now on `/readyz` says no and no new frame is taken; streams end, frames under way are finished.
     pub fn close(&self) {
         self.ready.store(false, Ordering::Relaxed);
+        self.streams.close();
         self.renderer.queue().close();
     }
 
@@ -97,6 +104,8 @@ pub fn router(app: App) -> Router {
         .routes(routes!(frames::read, frames::of_changed))
         .routes(routes!(archive::read, archive::of_changed))
         .routes(routes!(turntables::read))
+        .routes(routes!(streams::watch))
+        .routes(routes!(streams::events))
         .routes(routes!(pick::read))
         .routes(routes!(render_once::draw))
         .routes(routes!(gallery::list))
@@ -105,6 +114,7 @@ pub fn router(app: App) -> Router {
         .routes(routes!(service::healthz))
         .routes(routes!(service::readyz))
         .routes(routes!(service::version))
+        .routes(routes!(metrics::read))
         .split_for_parts();
 
     routes

@@ -56,6 +56,26 @@ pub(super) struct FrameQuery {
     elide: Option<String>,
 }
 
+/// How a stream runs.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(dead_code, reason = "names and types for the description; `StreamRequest::read` does the reading")]
+pub(super) struct StreamQuery {
+    /// Frames a second at most; 30 without it
+    #[param(minimum = 0.1, maximum = 60)]
+    fps: Option<f64>,
+}
+
+/// How the pictures of a stream lie one behind the other.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(dead_code, reason = "names and types for the description; the handler does the reading")]
+pub(super) struct FramingQuery {
+    /// `advance`: each picture with the next one's head behind it, as browsers need it; `length`: each with
+    /// its length. Without it, `advance` where `Accept` names an image type
+    framing: Option<String>,
+}
+
 /// What an archive holds.
 #[derive(IntoParams)]
 #[into_params(parameter_in = Query)]
@@ -194,7 +214,8 @@ fn operation_id(path: &str, method: &str) -> String {
 /// Every status that the call's shape lets it answer, beside those it names itself.
 fn add_errors(path: &str, method: &str, operation: &mut Value) {
     let has_body = operation.get("requestBody").is_some();
-    let sends_picture = ["/frame.", "/turntable.", "/render."].iter().any(|stem| path.contains(stem));
+    let sends_picture =
+        ["/frame.", "/turntable.", "/render.", "/stream.", "/events"].iter().any(|stem| path.contains(stem));
     let draws = sends_picture || path.ends_with("/pick");
     let changes = method != "get";
     let conditional = changes && path.contains("{id}") && !draws;

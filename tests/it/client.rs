@@ -2,7 +2,7 @@
 
 use axum::Router;
 use axum::body::Body;
-use axum::http::{HeaderMap, Method, Request, StatusCode};
+use axum::http::{HeaderMap, Method, Request, Response, StatusCode};
 use bytes::Bytes;
 use http_body_util::BodyExt;
 use rasterd::http::{App, router};
@@ -70,6 +70,16 @@ impl Client {
 
     fn over(app: App) -> Self {
         Self { router: router(app.clone()), app }
+    }
+
+    /// The reply to a `GET` as it begins.
+    pub async fn open(&self, path: &str, headers: &[(&str, &str)]) -> Response<Body> {
+        let mut request = Request::builder().uri(path);
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        let request = request.body(Body::empty()).expect("a request");
+        self.router.clone().oneshot(request).await.expect("infallible")
     }
 
     pub async fn send(&self, request: Request<Body>) -> Reply {

@@ -22,5 +22,6 @@ mod render_once;
 mod scenes;
 mod service;
 mod socket;
+mod streams;
 mod turntables;
 mod unchanged;

@@ -65,6 +65,7 @@ async fn the_description_has_every_route_with_its_statuses() {
         ("/gallery", "get"),
         ("/gallery/{name}/picture", "get"),
         ("/healthz", "get"),
+        ("/metrics", "get"),
         ("/openapi.json", "get"),
         ("/readyz", "get"),
         ("/render.jpg", "post"),
@@ -72,6 +73,7 @@ async fn the_description_has_every_route_with_its_statuses() {
         ("/render.webp", "post"),
         ("/scenes", "get post"),
         ("/scenes/{id}", "get put patch delete"),
+        ("/scenes/{id}/events", "get"),
         ("/scenes/{id}/files", "get"),
         ("/scenes/{id}/files/{name}", "get put delete"),
         ("/scenes/{id}/frame.exr", "get post"),
@@ -81,6 +83,7 @@ async fn the_description_has_every_route_with_its_statuses() {
         ("/scenes/{id}/frame.webp", "get post"),
         ("/scenes/{id}/frame.zip", "get post"),
         ("/scenes/{id}/pick", "get"),
+        ("/scenes/{id}/stream.mjpg", "get"),
         ("/scenes/{id}/turntable.gif", "get"),
         ("/scenes/{id}/turntable.png", "get"),
         ("/version", "get"),
@@ -98,6 +101,15 @@ async fn the_description_has_every_route_with_its_statuses() {
         for status in ["200", "304", "403", "404", "406", "413", "422", "500", "503", "504"] {
             assert!(responses[status].is_object(), "{picture}: {status}");
         }
+    }
+    for stream in ["stream.mjpg", "events"] {
+        let operation = &api["paths"][format!("/scenes/{{id}}/{stream}")]["get"];
+        for status in ["200", "404", "406", "413", "422", "503", "504"] {
+            assert!(operation["responses"][status].is_object(), "{stream}: {status}");
+        }
+        let parameters = operation["parameters"].as_array().expect("a list");
+        let output = parameters.iter().find(|parameter| parameter["name"] == "output").expect("output");
+        assert!(!output["schema"]["enum"].as_array().expect("words").contains(&"depth".into()), "{stream}");
     }
     assert!(!api.to_string().contains("{format}"));
 }

@@ -17,14 +17,14 @@ use tokio::task::JoinHandle;
 use tokio::time::timeout;
 
 /// A server on a port of its own.
-struct Server {
-    address: SocketAddr,
-    stop: oneshot::Sender<()>,
-    ended: JoinHandle<()>,
+pub struct Server {
+    pub address: SocketAddr,
+    pub stop: oneshot::Sender<()>,
+    pub ended: JoinHandle<()>,
 }
 
 impl Server {
-    async fn start(app: App) -> Self {
+    pub async fn start(app: App) -> Self {
         let new = NewScene {
             document: Some(triangle()),
             files: None,
@@ -40,7 +40,7 @@ impl Server {
         Self { address, stop, ended }
     }
 
-    async fn say(&self, text: &str) -> TcpStream {
+    pub async fn say(&self, text: &str) -> TcpStream {
         let mut stream = TcpStream::connect(self.address).await.expect("a connection");
         stream.write_all(text.as_bytes()).await.expect("a writable connection");
         stream

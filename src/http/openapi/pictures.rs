@@ -23,6 +23,11 @@ pub(super) fn expand(paths: &mut Map<String, Value>) {
                 retain_parameters(operation, |name| name != "output" && name != "quality")
             });
         }
+        if path.ends_with("/stream.mjpg") || path.ends_with("/events") {
+            let outputs =
+                words(|output| Format::Jpeg { quality: Format::DEFAULT_QUALITY }.drawn_as(output).is_ok());
+            operations(&mut item).for_each(|operation| narrow_outputs(operation, &outputs));
+        }
         let Some(stem) = path.strip_suffix(FORMAT) else {
             paths.insert(path, item);
             continue;
@@ -74,10 +79,14 @@ impl Kind {
         let schema = json!({ "type": "string", "contentMediaType": self.content_type });
         operation["responses"]["200"]["content"] = json!({ self.content_type: { "schema": schema } });
         retain_parameters(operation, |name| self.has_quality || name != "quality");
-        let parameters = operation["parameters"].as_array_mut().into_iter().flatten();
-        for output in parameters.filter(|parameter| parameter["name"] == "output") {
-            output["schema"] = json!({ "type": "string", "enum": self.outputs });
-        }
+        narrow_outputs(operation, &self.outputs);
+    }
+}
+
+fn narrow_outputs(operation: &mut Value, outputs: &[&str]) {
+    let parameters = operation["parameters"].as_array_mut().into_iter().flatten();
+    for output in parameters.filter(|parameter| parameter["name"] == "output") {
+        output["schema"] = json!({ "type": "string", "enum": outputs });
     }
 }
 

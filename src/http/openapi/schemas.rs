@@ -44,6 +44,7 @@ fn of_parameter(name: &str) -> Option<Value> {
         "eye" | "target" => Some(numbers("{2}")),
         "orbit" => Some(numbers("{1,2}")),
         "background" => Some(json!({ "type": "string", "minLength": 1 })),
+        "framing" => Some(words(&["advance", "length"])),
         "elide" => Some(words(&["all", "none"])),
         _ => None,
     }
