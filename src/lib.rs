@@ -17,6 +17,7 @@ pub mod import;
 pub mod jobs;
 pub mod limits;
 pub mod math;
+pub mod metrics;
 pub mod model;
 pub mod pipeline;
 pub mod plan;

@@ -39,7 +39,7 @@ use crate::scene::store::{Entry, Store};
 use crate::settings::Settings;
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
-use axum::middleware::{from_fn, from_fn_with_state};
+use axum::middleware::from_fn_with_state;
 use axum::response::IntoResponse;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -122,7 +122,7 @@ pub fn router(app: App) -> Router {
         .merge(page::parts())
         .layer(from_fn_with_state(app.clone(), guard::check))
         .layer(CatchPanicLayer::custom(|_| Problem::internal().into_response()))
-        .layer(from_fn(observe::observe))
+        .layer(from_fn_with_state(app.clone(), observe::observe))
         .layer(DefaultBodyLimit::disable()) // body.rs has the limit, and words for it
         .with_state(app)
 }

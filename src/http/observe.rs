@@ -1,8 +1,8 @@
 //! Around every request: its id, its error body, and its one line in the log.
 
-use super::problem;
+use super::{App, problem};
 use axum::body::HttpBody;
-use axum::extract::{MatchedPath, Request};
+use axum::extract::{MatchedPath, Request, State};
 use axum::http::header::CONTENT_LENGTH;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method};
 use axum::middleware::Next;
@@ -26,7 +26,7 @@ pub(super) struct FrameNote {
 }
 
 /// The outermost layer.
-pub(super) async fn observe(request: Request, next: Next) -> Response {
+pub(super) async fn observe(State(app): State<App>, request: Request, next: Next) -> Response {
     let id = sane_id(request.headers()).unwrap_or_else(fresh_id);
     let mut line = LogLine::new(&id, &request);
 
@@ -35,6 +35,7 @@ pub(super) async fn observe(request: Request, next: Next) -> Response {
     if let Ok(value) = HeaderValue::from_str(&id) {
         response.headers_mut().insert(REQUEST_ID, value);
     }
+    app.renderer.metrics().count_request(&line.route, response.status().as_u16());
     line.write(&response);
     response
 }

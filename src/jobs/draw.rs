@@ -1,10 +1,10 @@
 //! The stages after the request: plan → pipeline → encode, for every frame of a product.
 
-use super::counters::Counter;
 use super::product::{FileTag, Product, Rendered};
 use super::shift::Shift;
 use super::{Engine, JobError};
 use crate::encode::{self, Animation, Format, Zip};
+use crate::metrics::FrameKind;
 use crate::pipeline::{Cancelled, Frame, Work};
 use crate::plan::{self, FrameRequest, Output, Plan, PlanError};
 use crate::scene::Scene;
@@ -72,7 +72,7 @@ pub(super) fn draw_one(
     let product = Product::Still(format);
     let requests = product.requests(scene, request, &engine.limits)?;
     let mut making = Making::new(engine, scene, &product, work, None);
-    making.counter = &engine.counters.stream_frames;
+    making.kind = FrameKind::Stream;
     let frame = making.frame(&requests[0])?;
     let mut timings = vec![("plan", milliseconds(making.planning))];
     timings.extend(making.passes);
@@ -127,7 +127,7 @@ struct Making<'a> {
     product: &'a Product,
     work: Work<'a>,
     shift: Option<&'a mut Shift>,
-    counter: &'a Counter,
+    kind: FrameKind,
     frames: u32,
     began: Instant,
     waiting: Duration,
@@ -154,7 +154,7 @@ impl<'a> Making<'a> {
             product,
             work,
             shift,
-            counter: &engine.counters.frames,
+            kind: FrameKind::Frame,
             frames: 0,
             began: Instant::now(),
             waiting: Duration::ZERO,
@@ -199,7 +199,9 @@ impl<'a> Making<'a> {
     fn plan(&mut self, request: &FrameRequest) -> Result<Plan, JobError> {
         let began = Instant::now();
         let plan = self.engine.plan(self.scene, request)?;
-        self.planning += began.elapsed();
+        let planning = began.elapsed();
+        self.planning += planning;
+        self.engine.metrics.observe_passes([("plan", milliseconds(planning))]);
         self.tag.add(&plan);
         self.size = [plan.view.width, plan.view.height];
         self.depth_range = self.depth_range.or(plan.depth_range);
@@ -210,8 +212,9 @@ impl<'a> Making<'a> {
         let began = Instant::now();
         let frames = (self.engine.draw)(plans, &self.work)?;
         self.drawing += began.elapsed();
-        self.counter.add(1);
+        self.engine.metrics.frames_rendered(self.kind).inc();
         for frame in &frames {
+            self.engine.metrics.observe_passes(frame.timings.iter());
             frame.timings.iter().for_each(|(pass, ms)| *entry(&mut self.passes, pass) += ms);
             frame.stats.entries().iter().for_each(|(name, count)| *entry(&mut self.stats, name) += count);
         }
@@ -240,6 +243,7 @@ impl<'a> Making<'a> {
         let encoding = total.saturating_sub(self.planning).saturating_sub(self.drawing);
         let mut timings = vec![("plan", milliseconds(self.planning))];
         timings.extend(self.passes);
+        self.engine.metrics.observe_passes([("encode", milliseconds(encoding))]);
         timings.extend([("encode", milliseconds(encoding)), ("total", milliseconds(total))]);
         Rendered {
             bytes: bytes.into(),

@@ -8,7 +8,6 @@
 
 mod broadcast;
 mod cancel;
-mod counters;
 mod draw;
 mod error;
 mod product;
@@ -18,7 +17,6 @@ mod shift;
 pub use crate::encode::{Animation, Format};
 pub use broadcast::{News, Picture, StreamRequest, Streams, Watcher};
 pub(crate) use cancel::CancelOnDrop;
-pub use counters::{Counter, Counters};
 pub use draw::Draw;
 pub use error::JobError;
 pub use product::{Product, Rendered};
@@ -26,6 +24,7 @@ pub use queue::{Queue, QueueDepth};
 
 use crate::encode;
 use crate::limits::Limits;
+use crate::metrics::{Metrics, Rejection};
 use crate::pipeline::{self, Hit, Work};
 use crate::plan::Output;
 use crate::plan::request::{Elide, QueryFault};
@@ -74,7 +73,7 @@ struct Engine {
     elide: Elide,
     limits: Limits,
     draw: Box<Draw>,
-    counters: Counters,
+    metrics: Metrics,
 }
 
 impl Renderer {
@@ -114,8 +113,8 @@ impl Renderer {
 
     /// What has happened so far.
     #[must_use]
-    pub fn counters(&self) -> &Counters {
-        &self.engine.counters
+    pub fn metrics(&self) -> &Metrics {
+        &self.engine.metrics
     }
 
     /// Threads that draw.
@@ -221,7 +220,9 @@ impl Renderer {
                 let Drawn { frame, mut timings, stats } = drawn;
                 let work = engine.work(&flag);
                 let jpeg = encode::jpeg_with_comment(&frame, quality, &comment, &work)?;
-                timings.push(("encode", draw::milliseconds(began.elapsed())));
+                let encode = [("encode", draw::milliseconds(began.elapsed()))];
+                engine.metrics.observe_passes(encode);
+                timings.extend(encode);
                 Ok(Encoded { jpeg: jpeg.into(), size: [frame.width, frame.height], timings, stats })
             })
         });
@@ -253,14 +254,30 @@ impl Renderer {
         // Not within the deadline: many streams are slow streams, and none of them fails for that.
         let line = self.queue.line_up(kind).await?;
         let clock = Arc::new(Clock::start(self.deadline));
-        let turn = clock.wait(self.queue.turn(line)).await??;
+        let turn =
+            clock.wait(self.queue.turn(line)).await?.inspect_err(|error| self.count_rejected(error))?;
         let mut shift = Shift::new(turn, Arc::clone(&clock), arrived.elapsed());
+        self.metrics().observe_wait(shift.waited());
 
         let cancel = CancelOnDrop::default();
         let flag = cancel.flag();
         let engine = Arc::clone(&self.engine);
-        let job = tokio::task::spawn_blocking(move || caught(|| task(&engine, &flag, &mut shift)));
+        let job = tokio::task::spawn_blocking(move || {
+            let done = caught(|| task(&engine, &flag, &mut shift));
+            if matches!(done, Err(JobError::Cancelled)) {
+                engine.metrics.jobs_cancelled.inc();
+            }
+            done
+        });
         clock.wait(job).await?.map_err(|_| JobError::Panicked)?
+    }
+
+    fn count_rejected(&self, error: &JobError) {
+        match error {
+            JobError::Full(_) => self.metrics().jobs_rejected(Rejection::Full).inc(),
+            JobError::Closing => self.metrics().jobs_rejected(Rejection::Closing).inc(),
+            _ => {}
+        }
     }
 }
 
@@ -275,7 +292,7 @@ impl Engine {
             elide: machine.elide.clone(),
             limits,
             draw,
-            counters: Counters::default(),
+            metrics: Metrics::default(),
         })
     }
 

@@ -14,6 +14,7 @@ mod frames;
 mod gallery;
 mod guard;
 mod measure;
+mod metrics;
 mod numerics;
 mod pick;
 mod pictures;

@@ -6,6 +6,7 @@ use axum::body::Body;
 use axum::http::{Method, Response};
 use http_body_util::BodyExt;
 use rasterd::jobs::Draw;
+use rasterd::metrics::FrameKind;
 use serde_json::{Value, json};
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -138,7 +139,7 @@ async fn patch(client: &Client, patch: Value) {
 }
 
 fn rendered(client: &Client) -> u64 {
-    client.app.renderer.counters().stream_frames.get()
+    client.app.renderer.metrics().frames_rendered(FrameKind::Stream).get()
 }
 
 /// The file of a single frame, with the comment of a stream's.
@@ -313,7 +314,7 @@ async fn many_watchers_cost_as_much_as_one() {
 
     drop(watchers);
     until(|| client.app.streams.count() == 0).await;
-    assert_eq!(client.app.renderer.counters().watchers.get(), 0);
+    assert_eq!(client.app.renderer.metrics().stream_watchers.get(), 0);
 }
 
 #[tokio::test]
@@ -607,7 +608,7 @@ async fn a_watcher_that_does_not_read_holds_nobody_up_and_then_sees_what_is_new(
         }
     };
     assert!(numbers.len() <= 4, "too many old ones: {numbers:?}, after {latest}");
-    assert!(client.app.renderer.counters().pictures_dropped.get() >= 20);
+    assert!(client.app.renderer.metrics().stream_frames_dropped.get() >= 20);
 }
 
 /// Numbers of the pictures whose beginning is there.
@@ -623,8 +624,8 @@ async fn a_watcher_that_never_reads_is_given_up() {
     let settings = rasterd::settings::Settings { body_seconds: Duration::from_millis(300), ..settings() };
     let (client, server) = noisy(settings).await;
     let deaf = watch(&server).await;
-    until(|| client.app.renderer.counters().watchers.get() == 1).await;
-    until(|| client.app.renderer.counters().watchers.get() == 0).await;
+    until(|| client.app.renderer.metrics().stream_watchers.get() == 1).await;
+    until(|| client.app.renderer.metrics().stream_watchers.get() == 0).await;
     drop(deaf);
 }
 
@@ -632,7 +633,7 @@ async fn a_watcher_that_never_reads_is_given_up() {
 async fn a_client_that_leaves_is_no_watcher_any_more() {
     let (client, server) = noisy(settings()).await;
     let gone = watch(&server).await;
-    until(|| client.app.renderer.counters().pictures_sent.get() > 0).await;
+    until(|| client.app.renderer.metrics().stream_frames_sent.get() > 0).await;
     drop(gone);
     until(|| client.app.streams.count() == 0).await;
 }
@@ -643,8 +644,8 @@ async fn a_shutdown_ends_streams() {
     let server = Server::start(client.app.clone()).await;
     let mut watching = server.say(WATCH).await;
     let mut listening = server.say("GET /scenes/t/events HTTP/1.1\r\nhost: localhost\r\n\r\n").await;
-    until(|| client.app.renderer.counters().watchers.get() == 2).await;
-    until(|| client.app.renderer.counters().pictures_sent.get() > 0).await;
+    until(|| client.app.renderer.metrics().stream_watchers.get() == 2).await;
+    until(|| client.app.renderer.metrics().stream_frames_sent.get() > 0).await;
     server.stop.send(()).expect("a running server");
     for stream in [&mut watching, &mut listening] {
         let mut reply = Vec::new();
@@ -658,9 +659,9 @@ async fn a_shutdown_ends_streams() {
 async fn a_watcher_that_does_not_read_holds_no_shutdown_up() {
     let (client, server) = noisy(settings()).await;
     let _deaf = watch(&server).await;
-    until(|| client.app.renderer.counters().watchers.get() == 1).await;
+    until(|| client.app.renderer.metrics().stream_watchers.get() == 1).await;
     tokio::time::sleep(Duration::from_millis(100)).await;
     server.stop.send(()).expect("a running server");
     timeout(PATIENCE, server.ended).await.expect("an end").expect("no panic");
-    assert_eq!(client.app.renderer.counters().watchers.get(), 0);
+    assert_eq!(client.app.renderer.metrics().stream_watchers.get(), 0);
 }

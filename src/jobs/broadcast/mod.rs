@@ -108,7 +108,7 @@ impl Streams {
         });
         broadcast.watchers.fetch_add(1, Ordering::Relaxed);
         drop(live);
-        self.0.renderer.counters().watchers.add(1);
+        self.0.renderer.metrics().stream_watchers.inc();
         Watcher { news: broadcast.news.clone(), broadcast, streams: self.clone(), given: None }
     }
 
@@ -148,7 +148,7 @@ impl Streams {
     }
 
     fn leave(&self, broadcast: &Arc<Broadcast>) {
-        self.0.renderer.counters().watchers.take_one();
+        self.0.renderer.metrics().stream_watchers.dec();
         let mut live = self.live();
         if broadcast.watchers.fetch_sub(1, Ordering::Relaxed) == 1 {
             broadcast.over.cancel();
@@ -234,9 +234,11 @@ impl Watcher {
     /// Counts a picture as sent, and those before it that this watcher has never seen as dropped. `before`
     /// is the one sent last.
     pub fn count_sent(&self, picture: &Picture, before: Option<u64>) {
-        let counters = self.streams.0.renderer.counters();
-        counters.pictures_sent.add(1);
-        counters.pictures_dropped.add(before.map_or(0, |before| (picture.number - before).saturating_sub(1)));
+        let metrics = self.streams.0.renderer.metrics();
+        metrics.stream_frames_sent.inc();
+        metrics
+            .stream_frames_dropped
+            .inc_by(before.map_or(0, |before| (picture.number - before).saturating_sub(1)));
     }
 
     /// How many watch the same, this one included.
