@@ -4,24 +4,18 @@
 use crate::math::view::SUBPIXELS;
 use crate::math::{Projection, View};
 use crate::plan::{Output, Plan};
-use crate::scene::{Instance, Lens, framing::ResolvedCamera};
+use crate::scene::{Instance, Lens};
 use glam::{DMat4, DVec3, DVec4};
 use serde_json::{Map, Value, json};
 
-/// Describes the frame that `plan` draws and `camera` looks at, with the pictures of `outputs` beside it.
-/// `depth_range` is what 0 and 65535 stand for in a picture of depth.
+/// Describes the frame that `plan` draws, with the pictures of `outputs` beside it. `depth_range` is what 0 and 65535 stand for in a picture of depth.
 ///
 /// Matrices are lists of rows and multiply columns from the left. World space is right-handed with y up, a
 /// camera looks along −z of view space, and in clip space what can be seen has −w ≤ x, y ≤ w and
 /// 0 ≤ z ≤ w, with the near plane at z = w.
 #[must_use]
-pub fn frame_json(
-    plan: &Plan,
-    camera: &ResolvedCamera,
-    outputs: &[Output],
-    depth_range: Option<[f64; 2]>,
-) -> Vec<u8> {
-    let view = &plan.view;
+pub fn frame_json(plan: &Plan, outputs: &[Output], depth_range: Option<[f64; 2]>) -> Vec<u8> {
+    let (view, camera) = (&plan.view, &plan.camera);
     let files: Map<String, Value> = outputs
         .iter()
         .map(|output| (output.word().to_owned(), json!(format!("{}.png", output.word()))))

@@ -14,6 +14,7 @@ mod files;
 mod frames;
 mod gallery;
 mod guard;
+mod instances;
 mod link;
 mod metrics;
 mod observe;
@@ -21,6 +22,7 @@ mod openapi;
 mod page;
 mod patience;
 mod pick;
+mod plan;
 mod problem;
 mod query;
 mod render_once;
@@ -107,6 +109,8 @@ pub fn router(app: App) -> Router {
         .routes(routes!(streams::watch))
         .routes(routes!(streams::events))
         .routes(routes!(pick::read))
+        .routes(routes!(plan::read))
+        .routes(routes!(instances::list))
         .routes(routes!(render_once::draw))
         .routes(routes!(gallery::list))
         .routes(routes!(gallery::picture))

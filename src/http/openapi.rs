@@ -216,7 +216,7 @@ fn add_errors(path: &str, method: &str, operation: &mut Value) {
     let has_body = operation.get("requestBody").is_some();
     let sends_picture =
         ["/frame.", "/turntable.", "/render.", "/stream.", "/events"].iter().any(|stem| path.contains(stem));
-    let draws = sends_picture || path.ends_with("/pick");
+    let draws = sends_picture || path.ends_with("/pick") || path.ends_with("/plan");
     let changes = method != "get";
     let conditional = changes && path.contains("{id}") && !draws;
     let of = |applies: bool, statuses: &'static [u16]| if applies { statuses } else { &[] };

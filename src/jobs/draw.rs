@@ -6,7 +6,7 @@ use super::{Engine, JobError};
 use crate::encode::{self, Animation, Format, Zip};
 use crate::metrics::FrameKind;
 use crate::pipeline::{Cancelled, Frame, Work};
-use crate::plan::{self, FrameRequest, Output, Plan, PlanError};
+use crate::plan::{FrameRequest, Output, Plan};
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -98,20 +98,9 @@ pub(super) fn etag(
     }
     if let Product::Archive { outputs } = product {
         let outline = Plan::outline(scene, &requests[0], &engine.limits)?;
-        tag.add_description(&description(&outline, &requests[0], outputs, depth_range)?);
+        tag.add_description(&encode::frame_json(&outline, outputs, depth_range));
     }
     Ok(tag.finish())
-}
-
-/// The `frame.json` of an archive whose first picture `request` asks for.
-fn description(
-    plan: &Plan,
-    request: &FrameRequest,
-    outputs: &[Output],
-    depth_range: Option<[f64; 2]>,
-) -> Result<Vec<u8>, PlanError> {
-    let camera = plan::camera(&plan.scene, request, plan.view.width, plan.view.height)?;
-    Ok(encode::frame_json(plan, &camera, outputs, depth_range))
 }
 
 /// How long each of `frames` is shown.
@@ -226,7 +215,7 @@ impl<'a> Making<'a> {
         let plans: Vec<Plan> =
             requests.iter().map(|request| self.plan(request)).collect::<Result<_, JobError>>()?;
         self.product.check_memory(self.scene, &requests[0], &plans, &self.engine.limits)?;
-        let description = description(&plans[0], &requests[0], outputs, self.depth_range)?;
+        let description = encode::frame_json(&plans[0], outputs, self.depth_range);
         self.tag.add_description(&description);
         let frames = self.draw(&plans)?;
         let mut archive = Zip::default();

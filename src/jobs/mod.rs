@@ -47,8 +47,8 @@ use tokio::sync::Semaphore;
 pub struct Renderer {
     engine: Arc<Engine>,
     queue: Queue,
-    /// One permit for each tag that may be made at the same time.
-    tags: Arc<Semaphore>,
+    /// One permit for each plan that may be made at the same time without being drawn.
+    planners: Arc<Semaphore>,
     deadline: Duration,
 }
 
@@ -94,7 +94,7 @@ impl Renderer {
         Ok(Self {
             engine: Arc::new(Engine::new(&settings.machine, settings.limits(), draw)?),
             queue: Queue::new(settings.renders.get(), usize::from(settings.queue)),
-            tags: Arc::new(Semaphore::new(settings.renders.get().min(Semaphore::MAX_PERMITS))),
+            planners: Arc::new(Semaphore::new(settings.renders.get().min(Semaphore::MAX_PERMITS))),
             deadline: settings.frame_seconds,
         })
     }
@@ -159,9 +159,8 @@ impl Renderer {
         self.run(Kind::Single, move |engine, cancel, _| engine.pick(&scene, &request, x, y, cancel)).await
     }
 
-    /// The ETag that [`Renderer::render`] would answer with, without drawing and without a turn in
-    /// the queue: it is made of outlines, which take little time and no memory. As many are made at a time
-    /// as frames are drawn, each within the deadline.
+    /// The ETag that [`Renderer::render`] would answer with, without drawing: it is made of outlines, which
+    /// take little time and no memory.
     ///
     /// # Errors
     /// [`JobError::Plan`] and [`JobError::Unfit`] for a request that can't be met, but for what only a whole
@@ -172,16 +171,33 @@ impl Renderer {
         request: FrameRequest,
         product: impl Into<Product>,
     ) -> Result<String, JobError> {
+        let product = product.into();
+        self.settle(move |engine, cancel| engine.etag(&scene, &request, product, cancel)).await
+    }
+
+    /// The plan of the frame that `request` asks for, without drawing it.
+    ///
+    /// # Errors
+    /// [`JobError::Plan`], [`JobError::Deadline`], [`JobError::Panicked`].
+    pub async fn plan(&self, scene: Arc<Scene>, request: FrameRequest) -> Result<Plan, JobError> {
+        self.settle(move |engine, _| Ok(engine.plan(&scene, &request)?)).await
+    }
+
+    /// Runs what only plans, without a turn in the queue of those who draw. As many run at a time as frames
+    /// are drawn, each within the deadline.
+    async fn settle<T: Send + 'static>(
+        &self,
+        task: impl FnOnce(&Engine, &AtomicBool) -> Result<T, JobError> + Send + 'static,
+    ) -> Result<T, JobError> {
         let clock = Clock::start(self.deadline);
-        let turn =
-            clock.wait(Arc::clone(&self.tags).acquire_owned()).await?.map_err(|_| JobError::Closing)?;
+        let turns = Arc::clone(&self.planners);
+        let turn = clock.wait(turns.acquire_owned()).await?.map_err(|_| JobError::Closing)?;
         let cancel = CancelOnDrop::default();
         let flag = cancel.flag();
         let engine = Arc::clone(&self.engine);
-        let product = product.into();
         let job = tokio::task::spawn_blocking(move || {
             let _turn = turn;
-            caught(|| engine.etag(&scene, &request, product, &flag))
+            caught(|| task(&engine, &flag))
         });
         clock.wait(job).await?.map_err(|_| JobError::Panicked)?
     }

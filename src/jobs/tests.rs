@@ -173,7 +173,7 @@ async fn the_etag_needs_no_turn() {
 #[tokio::test]
 async fn tags_are_made_a_few_at_a_time_and_have_a_deadline() {
     let renderer = renderer(&settings(0, TICK), Box::new(|_, _| Ok(vec![frame()])));
-    let all = Arc::clone(&renderer.tags).acquire_owned().await.expect("never closed");
+    let all = Arc::clone(&renderer.planners).acquire_owned().await.expect("never closed");
     let tag = || renderer.etag(scene(), FrameRequest::default(), Format::Png);
     assert!(matches!(tag().await, Err(JobError::Deadline(TICK))));
     drop(all);

@@ -48,6 +48,16 @@ impl Mesh {
         DVec3::new(self.positions[0][i], self.positions[1][i], self.positions[2][i])
     }
 
+    /// Triangles of the material slot `slot`.
+    #[must_use]
+    pub fn triangles_of(&self, slot: usize) -> usize {
+        let ends = self.parts.iter().skip(1).map(|next| next.first_triangle as usize);
+        let runs = self.parts.iter().zip(ends.chain([self.triangles.len()]));
+        runs.filter(|(part, _)| part.slot as usize == slot)
+            .map(|(part, end)| end - part.first_triangle as usize)
+            .sum()
+    }
+
     /// Number of vertices.
     #[must_use]
     pub fn vertex_count(&self) -> usize {

@@ -129,7 +129,9 @@ impl<'a> Draft<'a> {
         let began = Instant::now();
         let bins = transform_clip_and_bin(self.plan, others, work)?;
         self.counts = bins.counts;
-        self.timings.push("geometry", milliseconds(began));
+        if !self.plan.items.is_empty() {
+            self.timings.push("geometry", milliseconds(began));
+        }
         Ok(bins)
     }
 

@@ -88,6 +88,8 @@ pub struct Draw {
     pub item: u32,
     /// Index into the scene's instances.
     pub instance: u32,
+    /// Index into the slots of its mesh.
+    pub slot: u32,
     /// How it is shaded.
     pub surface: Surface,
     /// Which of its fragments exist; `None`: all.

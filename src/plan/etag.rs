@@ -14,7 +14,7 @@ pub fn of(plan: &Plan) -> String {
     let mut settled = String::new();
     // What says of every material what it says itself is no override; nor is there one of data.
     let overrides = |shading: &Shading| scene.materials.iter().any(|own| own.shading != *shading);
-    let shading = plan.shading.filter(|_| plan.output.is_shaded()).filter(overrides);
+    let shading = plan.shading().filter(overrides);
     // Debug prints the shortest decimal that reads back as the same f64: exact.
     write!(
         settled,

@@ -5,15 +5,20 @@
 
 mod draw;
 mod etag;
+mod left_out;
 pub mod opacity;
+mod passes;
 mod post;
 pub mod request;
 mod shadow;
 mod surface;
+mod variant;
 mod view;
 
 pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
+pub use left_out::{LeftOut, Part, Reason};
 pub use opacity::{Alpha, AlphaTest, ItemTest, Opacity, Transparency};
+pub use passes::Pass;
 pub use post::{
     Bloom, Curve, Fxaa, Gaussian, Kernel, KernelRow, Neighbourhood, Pointwise, PostChain, PostPass, Sharpen,
 };
@@ -24,7 +29,7 @@ use crate::limits::Limits;
 use crate::math::View;
 use crate::model::Shading;
 use crate::scene::framing::{self, ResolvedCamera};
-use crate::scene::{Background, Cull, LightKind, Scene};
+use crate::scene::{Background, Cull, Instance, Light, LightKind, Scene, Shadow};
 use glam::Vec3;
 use request::BackgroundRequest;
 use std::sync::Arc;
@@ -39,6 +44,8 @@ pub struct Plan {
     /// What the picture shows.
     pub output: Output,
     /// The camera.
+    pub camera: ResolvedCamera,
+    /// What it sees.
     pub view: View,
     /// Samples a pixel.
     pub samples: u32,
@@ -58,6 +65,8 @@ pub struct Plan {
     pub post: PostChain,
     /// Distances that 0 and 65535 stand for in `output=depth`.
     pub depth_range: Option<[f64; 2]>,
+    /// What it goes without, of all that the scene and the request ask for.
+    pub left_out: Vec<LeftOut>,
     /// What overrides the shading of its materials.
     shading: Option<Shading>,
     /// Working memory that it will take.
@@ -69,6 +78,8 @@ pub struct Plan {
 /// A light that shines.
 #[derive(Clone, Debug)]
 pub struct PlannedLight {
+    /// Index into the scene's lights.
+    pub light: u32,
     /// Linear RGB.
     pub radiance: Vec3,
     /// Where its light comes from, anchored.
@@ -105,9 +116,7 @@ impl Plan {
     pub fn new(scene: &Arc<Scene>, request: &FrameRequest, limits: &Limits) -> Result<Self, PlanError> {
         let mut plan = Self::outline(scene, request, limits)?;
         plan.add_instances(limits)?;
-        if plan.draws.iter().any(|draw| draw.surface.lit) {
-            plan.add_lights(limits)?;
-        }
+        plan.add_lights(limits)?;
         Ok(plan)
     }
 
@@ -126,96 +135,174 @@ impl Plan {
         let bounds = scene.bounds(t);
         let view = view::of_camera(&camera, bounds, width, height);
         let is_shaded = request.output.is_shaded();
+        let samples = request.samples.unwrap_or(scene.render.samples);
         let mut plan = Self {
             scene: scene.clone(),
             t,
             output: request.output,
+            camera,
             view,
-            samples: if is_shaded { request.samples.unwrap_or(scene.render.samples) } else { 1 },
+            samples: if is_shaded { samples } else { 1 },
             items: Vec::new(),
             draws: Vec::new(),
             ambient: scene.ambient,
             lights: Vec::new(),
             shadows: Vec::new(),
             background: if is_shaded { background } else { Background::Color(Vec3::ZERO) },
-            post: if request.output == Output::Color {
-                PostChain::new(&scene.post, width, height)
-            } else {
-                PostChain::default()
-            },
+            post: PostChain::default(),
             depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
+            left_out: Vec::new(),
             shading: request.shading.or(scene.render.shading),
             bytes: 0,
             geometry_bytes: 0,
         };
+        plan.settle_post();
+        if !is_shaded {
+            plan.leave_out_light(samples);
+        }
         plan.charge(u64::from(width) * u64::from(height) * request.output.pixel_bytes(), limits)?;
         let transparent = plan.background == Background::Transparent;
         plan.charge(plan.post.frame_bytes(width, height, transparent), limits)?;
         Ok(plan)
     }
 
-    /// Adds every visible instance that reaches into the view, with its surfaces.
+    /// Settles the effects: colour alone has any.
+    fn settle_post(&mut self) {
+        let effects = &self.scene.post;
+        let reason = match self.output {
+            Output::Color => {
+                let size = [self.view.width, self.view.height];
+                self.post = PostChain::settle(effects, size, &mut self.left_out);
+                return;
+            }
+            Output::Radiance => Reason::BeforePost,
+            output => Reason::Data(output),
+        };
+        let parts = (0..effects.len()).map(Part::Effect);
+        self.left_out.extend(parts.map(|part| LeftOut { part, reason }));
+    }
+
+    /// Notes what a picture of data does not show.
+    fn leave_out_light(&mut self, samples: u32) {
+        let reason = Reason::Data(self.output);
+        self.leave_out(Part::Background, reason);
+        if samples > 1 {
+            self.leave_out(Part::Samples, reason);
+        }
+    }
+
+    fn leave_out(&mut self, part: Part, reason: Reason) {
+        self.left_out.push(LeftOut { part, reason });
+    }
+
+    /// Adds every instance that is seen, with its surfaces.
     fn add_instances(&mut self, limits: &Limits) -> Result<(), PlanError> {
-        let (scene, shading) = (self.scene.clone(), self.shading);
-        for (index, instance) in scene.visible() {
-            let mesh = scene.mesh(instance);
-            let mut placed = Item::new(&scene, instance, self.t, Vec::new());
-            if !placed.bounds().is_some_and(|bounds| view::reaches(&self.view, bounds)) {
-                continue;
+        let scene = self.scene.clone();
+        for (index, instance) in (0..).zip(&scene.instances) {
+            match self.place(index, instance) {
+                Ok(placed) => {
+                    self.charge(placed.frame_bytes(), limits)?;
+                    self.geometry_bytes += placed.frame_bytes();
+                    self.items.push(placed);
+                }
+                Err(reason) => self.leave_out(Part::Instance(index), reason),
             }
-            let item = number(self.items.len());
-            let slots = instance.materials.iter().map(|&material| {
-                let material = &scene.materials[material as usize];
-                let transparency = opacity::of_output(material, self.output)?;
-                let (tangents, receives) = (scene.tangents(instance), instance.receives_shadow);
-                let surface =
-                    surface::settle(material, mesh, tangents, receives, shading, self.output, &transparency);
-                let draw = number(self.draws.len());
-                let opacity = transparency.opacity();
-                let alpha_test = transparency.into_test();
-                self.draws.push(Draw { item, instance: number(index), surface, alpha_test });
-                let cull = if material.double_sided { Cull::None } else { scene.render.cull };
-                Some(Slot { draw, cull, opacity })
-            });
-            placed.slots = slots.collect();
-            if placed.slots.iter().all(Option::is_none) {
-                continue;
-            }
-            self.charge(placed.frame_bytes(), limits)?;
-            self.geometry_bytes += placed.frame_bytes();
-            self.items.push(placed);
         }
         Ok(())
+    }
+
+    /// An instance in its place, with what becomes of its slots; or why nothing of it is seen.
+    fn place(&mut self, index: u32, instance: &Instance) -> Result<Item, Reason> {
+        if !instance.visible {
+            return Err(Reason::Hidden);
+        }
+        let mut placed = Item::new(&self.scene, instance, self.t, Vec::new());
+        let bounds = placed.bounds().ok_or(Reason::NoTriangles)?;
+        if !view::reaches(&self.view, bounds) {
+            return Err(Reason::OutsideOfTheView);
+        }
+        placed.slots = (0..).zip(&instance.materials).map(|(slot, _)| self.add_draw(index, slot)).collect();
+        if placed.slots.iter().all(Option::is_none) {
+            return Err(Reason::Clear);
+        }
+        let is_clear = (0..).zip(&placed.slots).filter(|(_, kept)| kept.is_none());
+        let parts = is_clear.map(|(slot, _)| Part::Slot { instance: index, slot });
+        self.left_out.extend(parts.map(|part| LeftOut { part, reason: Reason::Clear }));
+        Ok(placed)
+    }
+
+    /// Adds the draw of one slot of an instance, for the item that comes next; `None` if nothing of its
+    /// material is there.
+    fn add_draw(&mut self, instance: u32, slot: u32) -> Option<Slot> {
+        let scene = &self.scene;
+        let of = &scene.instances[instance as usize];
+        let material = &scene.materials[of.materials[slot as usize] as usize];
+        let transparency = opacity::of_output(material, self.output)?;
+        let (mesh, tangents) = (scene.mesh(of), scene.tangents(of));
+        let (receives, shading) = (of.receives_shadow, self.shading);
+        let surface =
+            surface::settle(material, mesh, tangents, receives, shading, self.output, &transparency);
+        let cull = if material.double_sided { Cull::None } else { scene.render.cull };
+        let opacity = transparency.opacity();
+        let (item, draw) = (number(self.items.len()), number(self.draws.len()));
+        let alpha_test = transparency.into_test();
+        self.draws.push(Draw { item, instance, slot, surface, alpha_test });
+        Some(Slot { draw, cull, opacity })
     }
 
     /// Adds the lights that shine, with the shadow maps that they need.
     fn add_lights(&mut self, limits: &Limits) -> Result<(), PlanError> {
         let scene = self.scene.clone();
-        let mut participants = None;
+        let is_lit = self.draws.iter().any(|draw| draw.surface.lit);
         let receives = self.draws.iter().any(|draw| draw.surface.receives_shadow && draw.surface.lit);
-        for light in scene.lights.iter().filter(|light| light.enabled && light.radiance != Vec3::ZERO) {
-            let rays = match light.kind {
-                LightKind::Directional { direction } => shadow::Rays::Parallel(direction),
-                LightKind::Point { position, .. } => shadow::Rays::FromPoint(position),
-            };
-            let shadow = light.shadow.filter(|_| receives && scene.render.shadows);
-            let pass = shadow.and_then(|shadow| {
-                let participants =
-                    participants.get_or_insert_with(|| shadow::Participants::of(&scene, self.t));
-                shadow::plan(participants, rays, &shadow)
+        let mut participants = None;
+        for (index, light) in (0..).zip(&scene.lights) {
+            if let Some(reason) = why_dark(light, is_lit) {
+                self.leave_out(Part::Light(index), reason);
+                continue;
+            }
+            let shadow = light.shadow.and_then(|shadow| {
+                let pass = self.shadow(index, light, &shadow, receives, &mut participants);
+                pass.map_err(|reason| self.leave_out(Part::Shadow(index), reason)).ok()
             });
-            let shadow = match pass {
-                Some(pass) => {
-                    self.charge(pass.frame_bytes(), limits)?;
-                    self.shadows.push(pass);
-                    check_shadow_texels(&self.shadows, limits)?;
-                    Some(number(self.shadows.len() - 1))
-                }
-                None => None,
-            };
-            self.lights.push(PlannedLight { radiance: light.radiance, kind: light.kind, shadow });
+            let shadow = shadow.map(|pass| self.add_shadow(pass, limits)).transpose()?;
+            let (radiance, kind) = (light.radiance, light.kind);
+            self.lights.push(PlannedLight { light: index, radiance, kind, shadow });
         }
         Ok(())
+    }
+
+    /// The maps of a light that asks for a `shadow`, or why it needs none. `participants` are found when the
+    /// first light asks for them.
+    fn shadow(
+        &mut self,
+        index: u32,
+        light: &Light,
+        shadow: &Shadow,
+        receives: bool,
+        participants: &mut Option<shadow::Participants>,
+    ) -> Result<ShadowPass, Reason> {
+        if !self.scene.render.shadows {
+            return Err(Reason::NoShadows);
+        }
+        if !receives {
+            return Err(Reason::NothingReceives);
+        }
+        let rays = match light.kind {
+            LightKind::Directional { direction } => shadow::Rays::Parallel(direction),
+            LightKind::Point { position, .. } => shadow::Rays::FromPoint(position),
+        };
+        let participants = participants.get_or_insert_with(|| shadow::Participants::of(&self.scene, self.t));
+        let mut notes = shadow::Notes { light: index, left_out: &mut self.left_out };
+        shadow::plan(participants, rays, shadow, &mut notes)
+    }
+
+    /// Adds a shadow; gives back its index.
+    fn add_shadow(&mut self, pass: ShadowPass, limits: &Limits) -> Result<u32, PlanError> {
+        self.charge(pass.frame_bytes(), limits)?;
+        self.shadows.push(pass);
+        check_shadow_texels(&self.shadows, limits)?;
+        Ok(number(self.shadows.len() - 1))
     }
 
     /// Adds to the frame's working memory, and refuses what would not fit: a small document can ask
@@ -267,11 +354,28 @@ impl Plan {
             })
     }
 
+    /// What overrides the shading of its materials; data outputs know no override.
+    #[must_use]
+    pub fn shading(&self) -> Option<Shading> {
+        self.shading.filter(|_| self.output.is_shaded())
+    }
+
     /// Strong entity tag of the picture, in quotes: a function of its inputs and the program's
     /// version alone.
     #[must_use]
     pub fn etag(&self) -> String {
         etag::of(self)
+    }
+}
+
+/// Why a light does not shine in the frame, if it does not.
+fn why_dark(light: &Light, is_lit: bool) -> Option<Reason> {
+    if !light.enabled {
+        Some(Reason::SwitchedOff)
+    } else if light.radiance == Vec3::ZERO {
+        Some(Reason::Black)
+    } else {
+        (!is_lit).then_some(Reason::NothingLit)
     }
 }
 
@@ -324,10 +428,7 @@ fn background(scene: &Scene, request: &FrameRequest) -> Result<Background, PlanE
 }
 
 /// The camera of a frame of `width` × `height` pixels.
-///
-/// # Errors
-/// [`PlanError::Query`]: overrides that contradict the scene.
-pub fn camera(
+fn camera(
     scene: &Scene,
     request: &FrameRequest,
     width: u32,

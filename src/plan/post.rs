@@ -10,6 +10,7 @@ mod weights;
 pub use neighbourhood::{Bloom, Fxaa, Neighbourhood, Sharpen};
 pub use weights::{Gaussian, Kernel, KernelRow};
 
+use super::{LeftOut, Part, Reason};
 use crate::math::round_to_f32;
 use crate::scene::document::{PostEffect, TonemapOperator};
 
@@ -65,6 +66,19 @@ pub enum Curve {
     Reinhard,
 }
 
+impl Pointwise {
+    /// What a document calls the effect that it is made from.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Expose(_) | Self::Tonemap { .. } => "tonemap",
+            Self::Grayscale(_) => "grayscale",
+            Self::Vignette { .. } => "vignette",
+            Self::ColorMatrix(_) => "color_matrix",
+        }
+    }
+}
+
 /// An effect, settled.
 enum Step {
     Pointwise(Pointwise),
@@ -78,15 +92,27 @@ impl PostChain {
     /// Settles `effects` for a picture of `width × height` pixels.
     #[must_use]
     pub fn new(effects: &[PostEffect], width: u32, height: u32) -> Self {
+        Self::settle(effects, [width, height], &mut Vec::new())
+    }
+
+    /// The same, with a note in `left_out` of each effect that changes nothing.
+    pub(super) fn settle(effects: &[PostEffect], size: [u32; 2], left_out: &mut Vec<LeftOut>) -> Self {
         let mut chain = Self::default();
-        for step in effects.iter().filter_map(|effect| settle(effect, [width, height])) {
-            match (step, chain.passes.last_mut()) {
-                (Step::Neighbourhood(effect), _) => chain.passes.push(PostPass { effect, then: Vec::new() }),
-                (Step::Pointwise(step), None) => chain.in_tiles.push(step),
-                (Step::Pointwise(step), Some(pass)) => pass.then.push(step),
+        for (index, effect) in effects.iter().enumerate() {
+            match settle(effect, size) {
+                Ok(step) => chain.push(step),
+                Err(reason) => left_out.push(LeftOut { part: Part::Effect(index), reason }),
             }
         }
         chain
+    }
+
+    fn push(&mut self, step: Step) {
+        match (step, self.passes.last_mut()) {
+            (Step::Neighbourhood(effect), _) => self.passes.push(PostPass { effect, then: Vec::new() }),
+            (Step::Pointwise(step), None) => self.in_tiles.push(step),
+            (Step::Pointwise(step), Some(pass)) => pass.then.push(step),
+        }
     }
 
     /// What is left to do after the last pass; nothing if there is none.
@@ -121,24 +147,26 @@ impl PostChain {
     }
 }
 
-/// An effect as a step; `None` if it would change nothing.
-fn settle(effect: &PostEffect, size: [u32; 2]) -> Option<Step> {
-    let pointwise = |step| Some(Step::Pointwise(step));
-    let neighbourhood = |effect| Some(Step::Neighbourhood(effect));
+/// An effect as a step, or why it would change nothing.
+fn settle(effect: &PostEffect, size: [u32; 2]) -> Result<Step, Reason> {
+    let pointwise = |step| Ok(Step::Pointwise(step));
+    let neighbourhood = |effect| Ok(Step::Neighbourhood(effect));
     match effect {
-        PostEffect::Tonemap { operator: TonemapOperator::None, exposure: 1.0 } => None,
+        PostEffect::Tonemap { operator: TonemapOperator::None, exposure: 1.0 } => Err(Reason::NoCurve),
         PostEffect::Tonemap { operator, exposure } => pointwise(tonemap(*operator, factor(*exposure))),
-        PostEffect::Grayscale { amount: 0.0 } | PostEffect::Vignette { amount: 0.0 } => None,
+        PostEffect::Grayscale { amount: 0.0 }
+        | PostEffect::Vignette { amount: 0.0 }
+        | PostEffect::Sharpen { amount: 0.0 } => Err(Reason::NoAmount),
         PostEffect::Grayscale { amount } => pointwise(Pointwise::Grayscale(round_to_f32(*amount))),
         PostEffect::Vignette { amount } => pointwise(vignette(*amount, size)),
-        PostEffect::ColorMatrix { matrix } if *matrix == IDENTITY => None,
+        PostEffect::ColorMatrix { matrix } if *matrix == IDENTITY => Err(Reason::Identity),
         PostEffect::ColorMatrix { matrix } => {
             pointwise(Pointwise::ColorMatrix(matrix.map(|row| row.map(round_to_f32))))
         }
         PostEffect::Blur { radius } => {
-            Gaussian::new(*radius).map(Neighbourhood::Blur).and_then(neighbourhood)
+            Gaussian::new(*radius).ok_or(Reason::TooSmall).map(Neighbourhood::Blur).and_then(neighbourhood)
         }
-        PostEffect::Bloom { intensity: 0.0, .. } | PostEffect::Sharpen { amount: 0.0 } => None,
+        PostEffect::Bloom { intensity: 0.0, .. } => Err(Reason::NoIntensity),
         PostEffect::Bloom { threshold, intensity, radius } => neighbourhood(Neighbourhood::Bloom(Bloom {
             threshold: factor(*threshold),
             intensity: factor(*intensity),
@@ -149,7 +177,7 @@ fn settle(effect: &PostEffect, size: [u32; 2]) -> Option<Step> {
         }
         PostEffect::Fxaa => neighbourhood(Neighbourhood::Fxaa(Fxaa)),
         PostEffect::Kernel { kernel } => {
-            Kernel::new(kernel).map(Neighbourhood::Kernel).and_then(neighbourhood)
+            Kernel::new(kernel).ok_or(Reason::Identity).map(Neighbourhood::Kernel).and_then(neighbourhood)
         }
     }
 }

@@ -35,6 +35,8 @@ pub struct Scene {
     pub mesh_names: Vec<String>,
     /// Every material that an instance can refer to.
     pub materials: Vec<Arc<Material>>,
+    /// Names of `materials` in the document; the default one has none, nor do those of files.
+    pub material_names: Vec<Option<String>>,
     /// In order of name, which is the submission order; hidden ones too.
     pub instances: Vec<Instance>,
     /// Effects on the finished picture, in order.

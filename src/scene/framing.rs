@@ -18,6 +18,10 @@ use glam::DVec3;
 pub struct ResolvedCamera {
     /// Where it stands, anchored.
     pub eye: DVec3,
+    /// What it looks at, anchored.
+    pub target: DVec3,
+    /// What was asked to be up; `up` is as much of it as lies in the picture.
+    pub vertical: DVec3,
     /// To the right in the picture; with `up` and `forward` orthonormal, right × up = −forward.
     pub right: DVec3,
     /// Up in the picture.
@@ -73,7 +77,8 @@ pub fn resolve(
         return Err(faults);
     }
     let [right, up, forward] = basis(placed.target - placed.eye, placed.up);
-    Ok(ResolvedCamera { eye: placed.eye, right, up, forward, lens, near, far })
+    let Placed { eye, target, up: vertical, .. } = placed;
+    Ok(ResolvedCamera { eye, target, vertical, right, up, forward, lens, near, far })
 }
 
 /// Eye, target and up before the basis is made of them.

@@ -40,6 +40,7 @@ pub(super) fn of(entry: &Entry) -> Value {
             "frame": format!("{path}/frame.png"),
             "stream": format!("{path}/stream.mjpg"),
             "plan": format!("{path}/plan"),
+            "instances": format!("{path}/instances"),
         },
     })
 }

@@ -18,6 +18,7 @@ mod metrics;
 mod numerics;
 mod pick;
 mod pictures;
+mod plan;
 mod random;
 mod render_once;
 mod scenes;

@@ -77,9 +77,7 @@ impl Background {
     /// Writes the colours of `pixels` (`y · side + x` within the tile) to their places, as bright as radiance
     /// gets.
     pub fn draw(&self, level: Level, pixels: &[u32], region: &Region, side: usize, out: &mut [Vec<f32>; 3]) {
-        if !pixels.is_empty() {
-            dispatch!(level, simd => self.draw_kernel(simd, pixels, region, side, out));
-        }
+        dispatch!(level, simd => self.draw_kernel(simd, pixels, region, side, out));
     }
 
     #[inline(always)]

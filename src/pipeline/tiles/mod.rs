@@ -338,13 +338,17 @@ pub fn shade<P>(
         channel.clear();
         channel.resize(scratch.fragments.targets, 0.0);
     });
-    shade_fragments(level, shared, scratch);
-    times.shaded = scratch.fragments.sorted.len() as u64;
-    times.shade = clock.lap();
+    if !scratch.fragments.sorted.is_empty() {
+        shade_fragments(level, shared, scratch);
+        times.shaded = scratch.fragments.sorted.len() as u64;
+        times.shade = clock.lap();
+    }
 
     scratch.sky.iter_mut().for_each(|channel| channel.resize(side * side, 0.0));
-    shared.background.draw(level, &scratch.fragments.sky, &region, side, &mut scratch.sky);
-    times.sky = clock.lap();
+    if !scratch.fragments.sky.is_empty() {
+        shared.background.draw(level, &scratch.fragments.sky, &region, side, &mut scratch.sky);
+        times.sky = clock.lap();
+    }
 
     resolve::resolve(&scratch.fragments, &scratch.sky, shared.samples, side, &mut scratch.colors);
     let transparent = shared.background.is_transparent();

@@ -19,6 +19,18 @@ pub enum Neighbourhood {
 }
 
 impl Neighbourhood {
+    /// What a document calls it.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Blur(_) => "blur",
+            Self::Bloom(_) => "bloom",
+            Self::Sharpen(_) => "sharpen",
+            Self::Fxaa(_) => "fxaa",
+            Self::Kernel(_) => "kernel",
+        }
+    }
+
     pub(super) fn spare_planes(&self) -> usize {
         match self {
             Self::Blur(_) => Gaussian::SPARE_PLANES,

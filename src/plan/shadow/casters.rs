@@ -1,10 +1,10 @@
 //! Which instances throw a shadow on anything.
 
-use super::Rays;
+use super::{Notes, Rays};
 use crate::math::Bounds;
 use crate::model::Mesh;
 use crate::model::normals::face_normal;
-use crate::plan::{AlphaTest, Item, Slot, number, opacity};
+use crate::plan::{AlphaTest, Item, Reason, Slot, number, opacity};
 use crate::scene::{Cull, Instance, Scene};
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ pub(in crate::plan) struct Participants(Vec<Participant>);
 
 struct Participant {
     caster: Caster,
-    /// Whether it throws shadows.
-    casts: bool,
+    /// Why it throws no shadow whatever the light; `None`: it may throw one.
+    casts_none: Option<Reason>,
     /// Whether shadows fall on it.
     receives: bool,
     /// Whether one part of it throws a shadow on another.
@@ -25,6 +25,8 @@ struct Participant {
 
 /// What is drawn into a map.
 pub(super) struct Caster {
+    /// Index into the scene's instances.
+    pub(super) instance: u32,
     /// Its slots say what of it casts, from all of its faces; their draws count in `tests`.
     pub(super) item: Item,
     /// What decides on the slots that are cut out.
@@ -32,7 +34,7 @@ pub(super) struct Caster {
 }
 
 impl Caster {
-    fn new(scene: &Scene, instance: &Instance, t: f64) -> Self {
+    fn new(scene: &Scene, index: usize, instance: &Instance, t: f64) -> Self {
         let mut tests = Vec::new();
         let slots = instance.materials.iter().map(|&material| {
             let transparency = opacity::of_solid(&scene.materials[material as usize])?;
@@ -41,7 +43,7 @@ impl Caster {
             Some(slot)
         });
         let slots = slots.collect();
-        Self { item: Item::new(scene, instance, t, slots), tests }
+        Self { instance: number(index), item: Item::new(scene, instance, t, slots), tests }
     }
 }
 
@@ -49,18 +51,23 @@ impl Participants {
     /// Places every visible instance as it is at time `t` (seconds).
     pub(in crate::plan) fn of(scene: &Scene, t: f64) -> Self {
         let mut is_hollow = vec![None; scene.meshes.len()];
-        let participant = |instance: &Instance| {
-            let caster = Caster::new(scene, instance, t);
-            let casts = instance.casts_shadow && caster.item.slots.iter().any(Option::is_some);
+        let participant = |(index, instance): (usize, &Instance)| {
+            let caster = Caster::new(scene, index, instance, t);
+            let is_clear = caster.item.slots.iter().all(Option::is_none);
+            let casts_none = if instance.casts_shadow {
+                is_clear.then_some(Reason::Clear)
+            } else {
+                Some(Reason::CastsNone)
+            };
             let receives = instance.receives_shadow;
             let mut shades_itself = || {
                 let known: &mut Option<bool> = &mut is_hollow[instance.mesh as usize];
                 *known.get_or_insert_with(|| can_shade_itself(&caster.item.mesh))
             };
-            let shades_itself = casts && receives && shades_itself();
-            Participant { caster, casts, receives, shades_itself, others: None }
+            let shades_itself = casts_none.is_none() && receives && shades_itself();
+            Participant { caster, casts_none, receives, shades_itself, others: None }
         };
-        let mut all = Self(scene.visible().map(|(_, instance)| instance).map(participant).collect());
+        let mut all = Self(scene.visible().map(participant).collect());
         all.find_others();
         all
     }
@@ -91,13 +98,17 @@ impl Participants {
         self.0.iter().filter(|p| p.receives).map(|p| &p.caster.item).collect()
     }
 
-    /// Those that throw a shadow on anything.
-    pub(super) fn casters(&self, rays: Rays) -> Vec<&Caster> {
-        let shades = |p: &&Participant| {
-            let shades_others = || p.others.is_some_and(|others| can_shade(&p.caster.item, others, rays));
-            p.shades_itself || shades_others()
-        };
-        self.0.iter().filter(|p| p.casts).filter(shades).map(|p| &p.caster).collect()
+    /// Those that throw a shadow on anything; the others are noted.
+    pub(super) fn casters(&self, rays: Rays, notes: &mut Notes) -> Vec<&Caster> {
+        let mut casters = Vec::with_capacity(self.0.len());
+        for Participant { caster, casts_none, shades_itself, others, .. } in &self.0 {
+            let shades_others = || others.is_some_and(|others| can_shade(&caster.item, others, rays));
+            match casts_none {
+                None if *shades_itself || shades_others() => casters.push(caster),
+                reason => notes.leave_out_caster(caster.instance, reason.unwrap_or(Reason::ShadesNothing)),
+            }
+        }
+        casters
     }
 }
 

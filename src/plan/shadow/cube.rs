@@ -1,9 +1,9 @@
 //! The six maps around a point light.
 
 use super::casters::Caster;
-use super::{Face, Filter};
+use super::{Face, Filter, Notes};
 use crate::math::{Bounds, Projection, View};
-use crate::plan::{Item, view};
+use crate::plan::{Item, Reason, view};
 use crate::scene::Shadow;
 use glam::DVec3;
 
@@ -24,13 +24,14 @@ fn focal_length(resolution: u32) -> f64 {
 }
 
 /// Views along +x, −x, +y, −y, +z, −z from `position`: those that see a caster, and of which a receiver's
-/// kernel can reach a part.
+/// kernel can reach a part. The others are noted.
 pub(super) fn faces(
     position: DVec3,
     casters: &[&Caster],
     receivers: &[&Item],
     shadow: &Shadow,
     filter: &Filter,
+    notes: &mut Notes,
 ) -> Vec<Face> {
     let receive: Vec<Bounds> = receivers.iter().filter_map(|item| item.bounds()).collect();
     let Some(near) = near(position, casters) else { return Vec::new() };
@@ -43,7 +44,15 @@ pub(super) fn faces(
             let face = Face::new(side, view, shadow.cull, casters.iter().copied().filter(seen));
             let kernels = widened(&face.view, reach);
             let asked = receive.iter().any(|&bounds| view::reaches(&kernels, bounds));
-            (asked && !face.items.is_empty()).then_some(face)
+            let without = if face.items.is_empty() {
+                Some(Reason::NoCasterThere)
+            } else {
+                (!asked).then_some(Reason::NoReceiverThere)
+            };
+            if let Some(reason) = without {
+                notes.leave_out_side(side, reason);
+            }
+            without.is_none().then_some(face)
         })
         .collect()
 }

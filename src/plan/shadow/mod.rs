@@ -7,11 +7,12 @@ mod directional;
 pub(super) use casters::Participants;
 pub use cube::WIDEST_TANGENT;
 
-use super::{AlphaTest, Item, ItemTest, Slot, number};
+use super::{AlphaTest, Item, ItemTest, LeftOut, Part, Reason, Slot, number};
 use crate::math::View;
 use crate::scene::{Cull, Shadow, ShadowCull, ShadowFilter};
 use casters::Caster;
 use glam::DVec3;
+use std::collections::BTreeSet;
 
 /// The shadow of one light: its maps, and how they are read.
 #[derive(Clone, Debug)]
@@ -56,6 +57,8 @@ pub struct Face {
     pub view: View,
     /// What casts. Draws of its slots count in `tests`.
     pub items: Vec<Item>,
+    /// The instance of each of `items`, an index into the scene's.
+    pub casters: Vec<u32>,
     /// What decides on the triangles of slots that are cut out.
     pub tests: Vec<CasterTest>,
 }
@@ -76,7 +79,7 @@ impl Face {
             ShadowCull::Front => Cull::Front,
             ShadowCull::Back => Cull::Back,
         };
-        let mut face = Self { side, view, items: Vec::new(), tests: Vec::new() };
+        let mut face = Self { side, view, items: Vec::new(), casters: Vec::new(), tests: Vec::new() };
         casters.for_each(|caster| face.push(caster, cull));
         face
     }
@@ -91,6 +94,7 @@ impl Face {
         let number = number(self.items.len());
         self.tests.extend(caster.tests.iter().map(|test| CasterTest { item: number, test: test.clone() }));
         self.items.push(item);
+        self.casters.push(caster.instance);
     }
 
     /// The test of the triangles of `draw`.
@@ -161,6 +165,12 @@ impl ShadowPass {
         self.faces().iter().map(|face| u64::from(face.view.width).pow(2)).sum()
     }
 
+    /// Instances that are drawn into any of its maps.
+    #[must_use]
+    pub fn casters(&self) -> usize {
+        self.faces().iter().flat_map(|face| &face.casters).collect::<BTreeSet<_>>().len()
+    }
+
     /// Every map.
     #[must_use]
     pub fn faces(&self) -> &[Face] {
@@ -182,27 +192,50 @@ pub fn orthonormal_basis(n: DVec3) -> (DVec3, DVec3) {
     (DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y))
 }
 
-/// The maps of one light; `None` if nothing can cast on anything.
-#[must_use]
-pub(super) fn plan(participants: &Participants, rays: Rays, shadow: &Shadow) -> Option<ShadowPass> {
-    let casters = participants.casters(rays);
+/// What the shadow of one light goes without.
+pub(super) struct Notes<'a> {
+    /// Index into the scene's lights.
+    pub(super) light: u32,
+    /// Where it is noted.
+    pub(super) left_out: &'a mut Vec<LeftOut>,
+}
+
+impl Notes<'_> {
+    fn leave_out_caster(&mut self, instance: u32, reason: Reason) {
+        self.left_out.push(LeftOut { part: Part::Caster { light: self.light, instance }, reason });
+    }
+
+    fn leave_out_side(&mut self, side: usize, reason: Reason) {
+        self.left_out.push(LeftOut { part: Part::Side { light: self.light, side }, reason });
+    }
+}
+
+/// The maps of one light, or why nothing can cast on anything.
+pub(super) fn plan(
+    participants: &Participants,
+    rays: Rays,
+    shadow: &Shadow,
+    notes: &mut Notes,
+) -> Result<ShadowPass, Reason> {
+    let casters = participants.casters(rays, notes);
     if casters.is_empty() {
-        return None;
+        return Err(Reason::NothingCasts);
     }
     let receivers = participants.receivers();
     let filter = Filter::settle(shadow);
     let maps = match rays {
         Rays::Parallel(direction) => {
             let items: Vec<&Item> = casters.iter().map(|caster| &caster.item).collect();
-            let view = directional::fit(direction, &items, &receivers, shadow.resolution, &filter)?;
+            let view = directional::fit(direction, &items, &receivers, shadow.resolution, &filter)
+                .ok_or(Reason::NothingBehind)?;
             Maps::Directional(Face::new(0, view, shadow.cull, casters.into_iter()))
         }
         Rays::FromPoint(position) => {
-            let faces = cube::faces(position, &casters, &receivers, shadow, &filter);
-            (!faces.is_empty()).then_some(Maps::Cube { position, faces })?
+            let faces = cube::faces(position, &casters, &receivers, shadow, &filter, notes);
+            (!faces.is_empty()).then_some(Maps::Cube { position, faces }).ok_or(Reason::NothingBehind)?
         }
     };
-    Some(ShadowPass { maps, filter, bias: shadow.bias })
+    Ok(ShadowPass { maps, filter, bias: shadow.bias })
 }
 
 #[cfg(test)]

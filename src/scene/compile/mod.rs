@@ -97,6 +97,7 @@ pub fn compile(
         mesh_names: meshes.iter().map(|loaded| loaded.name.clone()).collect(),
         meshes: meshes.into_iter().map(|loaded| loaded.mesh).collect(),
         materials: surfaces.materials,
+        material_names: surfaces.names,
         instances,
         post: document.post.clone(),
         render: render_defaults(&document.render),

@@ -12,6 +12,8 @@ use std::sync::Arc;
 pub(super) struct Surfaces {
     /// Index 0 is the default material.
     pub materials: Vec<Arc<Material>>,
+    /// Their names in the document; `None` for the default one and those of files.
+    pub names: Vec<Option<String>>,
     /// What the client should know.
     pub warnings: Vec<Warning>,
     by_name: BTreeMap<String, u32>,
@@ -31,13 +33,14 @@ impl Surfaces {
     ) -> Result<Self, SceneError> {
         let mut surfaces = Self {
             materials: vec![Arc::new(Material::default())],
+            names: vec![None],
             warnings: Vec::new(),
             by_name: BTreeMap::new(),
             by_mesh: Vec::new(),
         };
         let textures = loader.textures(document)?;
         for (name, part) in &document.materials {
-            let index = surfaces.push(material(part, &textures));
+            let index = surfaces.push(Some(name), material(part, &textures));
             surfaces.by_name.insert(name.clone(), index);
         }
         let own: BTreeSet<_> = document
@@ -66,9 +69,10 @@ impl Surfaces {
         Ok(surfaces)
     }
 
-    fn push(&mut self, material: Material) -> u32 {
+    fn push(&mut self, name: Option<&String>, material: Material) -> u32 {
         let index = u32::try_from(self.materials.len()).expect("invariant: entries are limited");
         self.materials.push(Arc::new(material));
+        self.names.push(name.cloned());
         index
     }
 
@@ -79,7 +83,7 @@ impl Surfaces {
         for (i, slot) in mesh.mesh.slots.iter().enumerate() {
             let index = match slot.as_ref().map(|name| (name, named.get(name))) {
                 None => DEFAULT,
-                Some((_, Some(material))) => self.push(material.clone()),
+                Some((_, Some(material))) => self.push(None, material.clone()),
                 Some((name, None)) => {
                     let line = mesh.loaded.slot_lines.get(i).copied().flatten();
                     let detail = format!("no MTL file has the material {name:?}; it is neutral");

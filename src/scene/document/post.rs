@@ -143,23 +143,41 @@ fn kernel_row(node: Node, side: usize) -> Option<Vec<f64>> {
     weights.into_iter().collect()
 }
 
+impl PostEffect {
+    /// What a document calls it.
+    #[must_use]
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Tonemap { .. } => "tonemap",
+            Self::Blur { .. } => "blur",
+            Self::Grayscale { .. } => "grayscale",
+            Self::Vignette { .. } => "vignette",
+            Self::Bloom { .. } => "bloom",
+            Self::Sharpen { .. } => "sharpen",
+            Self::Fxaa => "fxaa",
+            Self::ColorMatrix { .. } => "color_matrix",
+            Self::Kernel { .. } => "kernel",
+        }
+    }
+}
+
 impl ToJson for PostEffect {
     fn to_json(&self) -> Value {
+        let fields = Fields::of_type(self.type_name());
         match self {
             Self::Tonemap { operator, exposure } => {
-                Fields::of_type("tonemap").with_word("operator", *operator).with("exposure", exposure)
+                fields.with_word("operator", *operator).with("exposure", exposure)
             }
-            Self::Blur { radius } => Fields::of_type("blur").with("radius", radius),
-            Self::Grayscale { amount } => Fields::of_type("grayscale").with("amount", amount),
-            Self::Vignette { amount } => Fields::of_type("vignette").with("amount", amount),
-            Self::Bloom { threshold, intensity, radius } => Fields::of_type("bloom")
-                .with("threshold", threshold)
-                .with("intensity", intensity)
-                .with("radius", radius),
-            Self::Sharpen { amount } => Fields::of_type("sharpen").with("amount", amount),
-            Self::Fxaa => Fields::of_type("fxaa"),
-            Self::ColorMatrix { matrix } => Fields::of_type("color_matrix").with("matrix", matrix),
-            Self::Kernel { kernel } => Fields::of_type("kernel").with("kernel", kernel),
+            Self::Blur { radius } => fields.with("radius", radius),
+            Self::Grayscale { amount } => fields.with("amount", amount),
+            Self::Vignette { amount } => fields.with("amount", amount),
+            Self::Bloom { threshold, intensity, radius } => {
+                fields.with("threshold", threshold).with("intensity", intensity).with("radius", radius)
+            }
+            Self::Sharpen { amount } => fields.with("amount", amount),
+            Self::Fxaa => fields,
+            Self::ColorMatrix { matrix } => fields.with("matrix", matrix),
+            Self::Kernel { kernel } => fields.with("kernel", kernel),
         }
         .finish()
     }

@@ -101,7 +101,8 @@ fn what_is_not_framed_does_not_move_the_camera() {
     for (width, height) in [(800, 600), (300, 900)] {
         let at = |scene: &Scene| {
             let camera = resolve(scene, &FrameRequest::default(), width, height).unwrap();
-            ResolvedCamera { eye: camera.eye + scene.anchor, ..camera }
+            let [eye, target] = [camera.eye, camera.target].map(|point| point + scene.anchor);
+            ResolvedCamera { eye, target, ..camera }
         };
         assert_eq!(at(&with_floor(false, true)), at(&plain));
         assert!((at(&with_floor(true, true)).eye - at(&plain).eye).length() > 50.0);
