@@ -58,7 +58,7 @@ struct FrameFlags {
     /// JPEG quality, 1 to 100
     #[arg(long, allow_hyphen_values = true)]
     quality: Option<String>,
-    /// color, depth, normal, albedo, instance or wireframe
+    /// color, depth, normal, albedo, instance, wireframe; of the stages ids, shadow_map, tiles or shaded
     #[arg(long, allow_hyphen_values = true)]
     output: Option<String>,
     /// blinn_phong, lambert, unlit, vertex_color or normal, in place of every material's
@@ -91,7 +91,7 @@ struct FrameFlags {
     /// Of a turntable: frames of a whole turn [default: 36]
     #[arg(long, allow_hyphen_values = true)]
     frames: Option<String>,
-    /// Of an archive: outputs with commas between [default: all]
+    /// Of an archive: outputs with commas between [default: all but the stages]
     #[arg(long, allow_hyphen_values = true)]
     outputs: Option<String>,
 }

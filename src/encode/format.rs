@@ -81,10 +81,11 @@ impl Format {
     pub fn drawn_as(self, output: Output) -> Result<Output, Unfit> {
         match self {
             Self::Png => Ok(output),
-            Self::Jpeg { .. } | Self::Webp if output.is_values() => {
-                Err(Unfit::Values { output, extension: self.extension() })
-            }
-            Self::Jpeg { .. } | Self::Webp => Ok(output),
+            // What is lossy keeps no numbers: of depth it shows greys, of instances their colours.
+            Self::Jpeg { .. } if output == Output::Instance => Ok(Output::Ids),
+            Self::Jpeg { .. } => Ok(output),
+            Self::Webp if output.is_values() => Err(Unfit::Values { output, extension: self.extension() }),
+            Self::Webp => Ok(output),
             Self::Exr | Self::Hdr if output.is_shaded() => Ok(Output::Radiance),
             Self::Exr | Self::Hdr => Err(Unfit::Data { output, extension: self.extension() }),
         }
@@ -215,13 +216,20 @@ mod tests {
     }
 
     #[test]
+    fn a_jpeg_shows_every_output_in_its_way() {
+        let jpeg = Format::Jpeg { quality: 80 };
+        for output in Output::all() {
+            let expected = if output == Output::Instance { Output::Ids } else { output };
+            assert_eq!(jpeg.drawn_as(output), Ok(expected));
+        }
+    }
+
+    #[test]
     fn values_go_into_a_png_alone() {
         for output in [Output::Depth, Output::Instance] {
             assert_eq!(Format::Png.drawn_as(output), Ok(output));
-            for format in [Format::Webp, Format::Jpeg { quality: 80 }] {
-                let fault = format.drawn_as(output).unwrap_err().to_string();
-                assert!(fault.contains(output.word()) && fault.ends_with(".png"), "{fault}");
-            }
+            let fault = Format::Webp.drawn_as(output).unwrap_err().to_string();
+            assert!(fault.contains(output.word()) && fault.ends_with(".png"), "{fault}");
             assert!(Animation::Apng.check(output).is_ok() && Animation::Gif.check(output).is_err());
         }
     }

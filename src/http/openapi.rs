@@ -31,7 +31,10 @@ pub(super) struct FrameQuery {
     /// JPEG quality
     #[param(minimum = 1, maximum = 100)]
     quality: Option<u8>,
-    /// `color`, `depth`, `normal`, `albedo`, `instance` or `wireframe`
+    /// `color`, `depth`, `normal`, `albedo`, `instance` or `wireframe`; of the pipeline's stages `ids` (a colour
+    /// for each instance: the upper 24 bits of `id · 0x9E3779B1 mod 2³²`), `shadow_map`, `tiles` (how many
+    /// triangles each lists), `shaded` (how many fragments each pixel has). A JPEG of depth has 8-bit greys, one
+    /// of instances is that of `ids`
     output: Option<String>,
     /// `blinn_phong`, `lambert`, `unlit`, `vertex_color` or `normal`, in place of every material's
     shading: Option<String>,
@@ -81,7 +84,8 @@ pub(super) struct FramingQuery {
 #[into_params(parameter_in = Query)]
 #[expect(dead_code, reason = "names and types for the description; `Product::read_archive` does the reading")]
 pub(super) struct Outputs {
-    /// Outputs with commas between; without it, all there are. It stands for `output`, which is not taken
+    /// Outputs with commas between; without it, all but the pipeline's stages. It stands for `output`, which is
+    /// not taken
     outputs: Option<String>,
 }
 

@@ -46,7 +46,8 @@ impl Product {
         Self::Turntable { frames: frames.unwrap_or(DEFAULT_TURNTABLE_FRAMES), format }
     }
 
-    /// An archive, out of a query that may hold other parameters too: `outputs`, else all there are.
+    /// An archive, out of a query that may hold other parameters too: `outputs`, else all that show the
+    /// scene.
     pub fn read_archive(query: &mut Query) -> Self {
         if query.text("output").is_some() {
             query.fault(
@@ -54,7 +55,7 @@ impl Product {
                 "is that of a single picture; an archive takes outputs, with commas between",
             );
         }
-        Self::Archive { outputs: query.parsed("outputs", Output::list).unwrap_or_else(Output::all) }
+        Self::Archive { outputs: query.parsed("outputs", Output::list).unwrap_or_else(Output::of_the_scene) }
     }
 
     /// The file's media type.

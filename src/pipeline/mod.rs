@@ -190,6 +190,7 @@ fn share<'a>(plan: &'a Plan, bins: &'a Bins, maps: &'a [ShadowMap]) -> Shared<'a
         },
         frames: plan.shadows.iter().map(shadow::frame).collect(),
         background: sky::Background::new(&plan.background, &plan.view),
+        counts: plan.output == Output::Shaded,
         samples: plan.samples,
         nearest: samples::nearest_to_centre(plan.samples),
     }

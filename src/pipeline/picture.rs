@@ -22,6 +22,12 @@ pub(super) enum Picture {
     Values(Vec<u16>),
     /// Which triangle the centre of each pixel sees.
     Seen(Vec<Option<Entry>>),
+    /// Colours that stand for what is seen.
+    FalseColors(Vec<[u8; 4]>),
+    /// Colours that stand for how many fragments were shaded.
+    Counts(Vec<[u8; 4]>),
+    /// Nothing that tiles draw: the shadow maps, once all else is done.
+    ShadowMaps,
 }
 
 impl Picture {
@@ -38,6 +44,9 @@ impl Picture {
             Output::Radiance => Self::Radiance(vec![[0.0; 4]; count]),
             Output::Depth | Output::Instance => Self::Values(vec![0; count]),
             Output::Wireframe => Self::Seen(vec![None; count]),
+            Output::Ids | Output::Tiles => Self::FalseColors(vec![[0; 4]; count]),
+            Output::Shaded => Self::Counts(vec![[0; 4]; count]),
+            Output::ShadowMap => Self::ShadowMaps,
         }
     }
 
@@ -61,6 +70,13 @@ impl Picture {
             Self::Seen(entries) => look(tiles::split(entries, grid), |scratch, tile| {
                 output::write_entries(shared.bins, scratch, tile);
             }),
+            Self::FalseColors(pixels) => look(tiles::split(pixels, grid), |scratch, tile| {
+                output::write_false_colors(plan, shared.bins, scratch, tile);
+            }),
+            Self::Counts(pixels) => shade(shared, tiles::split(pixels, grid), |_, resolved, tile| {
+                output::write_counts(resolved, tile);
+            }),
+            Self::ShadowMaps => (0..grid.tiles()).map(|_| idle()).collect(),
         }
     }
 
@@ -79,6 +95,12 @@ impl Picture {
             Self::Bytes(pixels) => Ok(Pixels::Rgba8 { pixels, opaque }),
             Self::Radiance(pixels) => Ok(Pixels::Rgba32F { pixels, opaque }),
             Self::Values(pixels) => Ok(Pixels::Gray16(pixels)),
+            Self::FalseColors(pixels) | Self::Counts(pixels) => Ok(Pixels::Rgba8 { pixels, opaque: true }),
+            Self::ShadowMaps => {
+                let pixels = output::draw_shadow_maps(plan, shared.lighting.maps, work)?;
+                timings.push("resolve", super::milliseconds(began));
+                Ok(Pixels::Rgba8 { pixels, opaque: true })
+            }
             Self::Linear(mut frame) => {
                 let mut pixels = vec![[0; 4]; plan.view.pixels()];
                 chain.run(&mut frame, work)?;
@@ -108,6 +130,11 @@ fn shade<'a, P: Send>(
         })
     };
     tiles.into_iter().map(task).collect()
+}
+
+/// A task that makes nothing of a tile.
+fn idle<'a>() -> TileTask<'a> {
+    Box::new(|_, _| TileTimes::default())
 }
 
 /// Tasks that `write` what is seen as it is.

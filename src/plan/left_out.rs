@@ -51,6 +51,8 @@ pub enum Part {
     Background,
     /// Samples beyond the first.
     Samples,
+    /// All that the camera sees.
+    View,
 }
 
 /// Why a frame goes without it.
@@ -98,6 +100,8 @@ pub enum Reason {
     TooSmall,
     /// The output shows data, not light.
     Data(Output),
+    /// The output shows what lights see.
+    ViewsOfLights,
     /// The output shows light as it is before the effects.
     BeforePost,
 }
@@ -122,6 +126,7 @@ impl Part {
             Self::Effect(index) => format!("post effect {index} ({})", scene.post[index].type_name()),
             Self::Background => "background".to_owned(),
             Self::Samples => "samples".to_owned(),
+            Self::View => "view of the camera".to_owned(),
         }
     }
 }
@@ -149,6 +154,7 @@ impl Display for Reason {
             Self::NoIntensity => "a glow of intensity 0 changes nothing",
             Self::Identity => "it keeps every colour",
             Self::TooSmall => "its radius reaches no other pixel",
+            Self::ViewsOfLights => "the picture shows what lights see",
             Self::BeforePost => "linear colour is taken before post",
             Self::Data(output) => return write!(f, "output={} shows no light", output.word()),
         };

@@ -117,6 +117,9 @@ impl Plan {
         let mut plan = Self::outline(scene, request, limits)?;
         plan.add_instances(limits)?;
         plan.add_lights(limits)?;
+        if plan.output == Output::ShadowMap {
+            plan.leave_out_view();
+        }
         Ok(plan)
     }
 
@@ -142,7 +145,7 @@ impl Plan {
             output: request.output,
             camera,
             view,
-            samples: if is_shaded { samples } else { 1 },
+            samples: if request.output.looks_as_color() { samples } else { 1 },
             items: Vec::new(),
             draws: Vec::new(),
             ambient: scene.ambient,
@@ -186,9 +189,17 @@ impl Plan {
     fn leave_out_light(&mut self, samples: u32) {
         let reason = Reason::Data(self.output);
         self.leave_out(Part::Background, reason);
-        if samples > 1 {
+        if self.samples < samples {
             self.leave_out(Part::Samples, reason);
         }
+    }
+
+    /// Drops what the camera sees, once it is known which shadows fall there.
+    fn leave_out_view(&mut self) {
+        self.items.clear();
+        self.draws.clear();
+        self.bytes -= std::mem::take(&mut self.geometry_bytes);
+        self.leave_out(Part::View, Reason::ViewsOfLights);
     }
 
     fn leave_out(&mut self, part: Part, reason: Reason) {
@@ -257,7 +268,7 @@ impl Plan {
         let receives = self.draws.iter().any(|draw| draw.surface.receives_shadow && draw.surface.lit);
         let mut participants = None;
         for (index, light) in (0..).zip(&scene.lights) {
-            if let Some(reason) = why_dark(light, is_lit) {
+            if let Some(reason) = self.why_dark(light, is_lit) {
                 self.leave_out(Part::Light(index), reason);
                 continue;
             }
@@ -270,6 +281,19 @@ impl Plan {
             self.lights.push(PlannedLight { light: index, radiance, kind, shadow });
         }
         Ok(())
+    }
+
+    /// Why a light does not shine in the frame, if it does not.
+    fn why_dark(&self, light: &Light, is_lit: bool) -> Option<Reason> {
+        if !self.output.is_lit() {
+            Some(Reason::Data(self.output))
+        } else if !light.enabled {
+            Some(Reason::SwitchedOff)
+        } else if light.radiance == Vec3::ZERO {
+            Some(Reason::Black)
+        } else {
+            (!is_lit).then_some(Reason::NothingLit)
+        }
     }
 
     /// The maps of a light that asks for a `shadow`, or why it needs none. `participants` are found when the
@@ -354,10 +378,10 @@ impl Plan {
             })
     }
 
-    /// What overrides the shading of its materials; data outputs know no override.
+    /// What overrides the shading of its materials; what shows no light knows no override.
     #[must_use]
     pub fn shading(&self) -> Option<Shading> {
-        self.shading.filter(|_| self.output.is_shaded())
+        self.shading.filter(|_| self.output.is_lit())
     }
 
     /// Strong entity tag of the picture, in quotes: a function of its inputs and the program's
@@ -365,17 +389,6 @@ impl Plan {
     #[must_use]
     pub fn etag(&self) -> String {
         etag::of(self)
-    }
-}
-
-/// Why a light does not shine in the frame, if it does not.
-fn why_dark(light: &Light, is_lit: bool) -> Option<Reason> {
-    if !light.enabled {
-        Some(Reason::SwitchedOff)
-    } else if light.radiance == Vec3::ZERO {
-        Some(Reason::Black)
-    } else {
-        (!is_lit).then_some(Reason::NothingLit)
     }
 }
 

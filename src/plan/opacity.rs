@@ -97,12 +97,7 @@ impl Transparency {
 /// What an output shows of `material`'s alpha; `None` if there is nothing to be seen of it.
 #[must_use]
 pub fn of_output(material: &Material, output: Output) -> Option<Transparency> {
-    match output {
-        Output::Color | Output::Radiance => of_picture(material),
-        Output::Normal | Output::Albedo | Output::Depth | Output::Instance | Output::Wireframe => {
-            of_solid(material)
-        }
-    }
+    if output.looks_as_color() || output.is_lit() { of_picture(material) } else { of_solid(material) }
 }
 
 /// What counts as there of a material; `None` if nothing does.

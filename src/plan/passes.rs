@@ -57,6 +57,9 @@ impl Plan {
     }
 
     fn why_geometry(&self) -> Why {
+        if self.output == Output::ShadowMap {
+            return Err("The picture shows what lights see, not what the camera sees.".to_owned());
+        }
         if self.items.is_empty() {
             return Err("No instance reaches into the view.".to_owned());
         }
@@ -108,7 +111,10 @@ impl Plan {
         let samples = counted(self.samples as usize, "sample");
         match self.output {
             Output::Depth | Output::Instance => Err("Each pixel has one value, found by raster.".to_owned()),
+            Output::Ids | Output::Tiles => Err("Colours stand for numbers, found by raster.".to_owned()),
             Output::Wireframe => Ok("Lines are drawn along the edges of what the pixels see.".to_owned()),
+            Output::ShadowMap => Ok("The maps are laid out side by side.".to_owned()),
+            Output::Shaded => Ok("The fragments of each pixel are counted.".to_owned()),
             _ if !self.post.passes.is_empty() => {
                 Ok(format!("A pixel is the mean of {samples}, kept in linear light for post."))
             }
@@ -141,10 +147,13 @@ impl Plan {
 /// What an output shows in place of colours; `None` if it is shaded.
 fn shown_unshaded(output: Output) -> Option<&'static str> {
     match output {
-        Output::Color | Output::Radiance | Output::Normal | Output::Albedo => None,
+        Output::Color | Output::Radiance | Output::Normal | Output::Albedo | Output::Shaded => None,
         Output::Depth => Some("Depth is a distance: no colour is needed."),
         Output::Instance => Some("An instance has a number: no colour is needed."),
         Output::Wireframe => Some("Lines are white on black: no colour is needed."),
+        Output::Ids => Some("An instance has a colour for its number: none is computed."),
+        Output::ShadowMap => Some("Shadow maps hold depth: no colour is needed."),
+        Output::Tiles => Some("A tile shows how many triangles it lists: their colours are not needed."),
     }
 }
 

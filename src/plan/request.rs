@@ -121,6 +121,14 @@ pub enum Output {
     Instance,
     /// White lines on black: the edges of what is seen.
     Wireframe,
+    /// A colour for each instance.
+    Ids,
+    /// What lights see: the shadow maps side by side.
+    ShadowMap,
+    /// How many triangles each tile of the picture lists.
+    Tiles,
+    /// How many fragments are shaded for each pixel of the picture.
+    Shaded,
     /// The shaded picture in linear light, before `post`, in 32-bit floats: what the float file formats
     /// hold. No query names it.
     Radiance,
@@ -133,14 +141,26 @@ impl Output {
         matches!(self, Self::Color | Self::Radiance)
     }
 
+    /// Whether lights decide what it shows.
+    #[must_use]
+    pub fn is_lit(self) -> bool {
+        self.is_shaded() || self == Self::ShadowMap
+    }
+
+    /// Whether its samples see what those of the shaded picture see: all of them, and what is blended too.
+    #[must_use]
+    pub fn looks_as_color(self) -> bool {
+        self.is_shaded() || matches!(self, Self::Tiles | Self::Shaded)
+    }
+
     /// Bytes of a finished pixel.
     #[must_use]
     pub fn pixel_bytes(self) -> u64 {
         match self {
-            Self::Color | Self::Normal | Self::Albedo => 4,
             Self::Depth | Self::Instance => 2,
             // Beside the colour which triangle is seen.
             Self::Radiance | Self::Wireframe => 16,
+            _ => 4,
         }
     }
 

@@ -21,10 +21,12 @@ pub fn settle(
     transparency: &Transparency,
 ) -> Surface {
     let shading = match output {
-        Output::Color | Output::Radiance => shading.unwrap_or(material.shading),
+        // Which lights have shadows follows from what they light.
+        Output::Color | Output::Radiance | Output::ShadowMap => shading.unwrap_or(material.shading),
         Output::Normal => Shading::Normal,
-        // The diffuse colour alone; what depth and instances show needs no colour at all.
+        // The diffuse colour alone; the others need no colour at all.
         Output::Albedo | Output::Depth | Output::Instance | Output::Wireframe => Shading::Unlit,
+        Output::Ids | Output::Tiles | Output::Shaded => Shading::Unlit,
     };
     let lit = matches!(shading, Shading::BlinnPhong | Shading::Lambert);
     let colored = lit || shading == Shading::Unlit;

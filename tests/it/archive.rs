@@ -52,6 +52,12 @@ async fn its_pictures_are_the_frames_of_their_outputs() {
         assert!(all[&format!("{output}.png")] == frame.body, "{output}");
         assert_eq!(frame_json(&all)["files"][output], format!("{output}.png"));
     }
+    assert_eq!(all.len(), 7, "stages are there on request alone: {:?}", all.keys());
+    let stages = entries(&client.get("/scenes/t/frame.zip?outputs=ids,shadow_map,tiles,shaded,color").await);
+    for output in ["ids", "shadow_map", "tiles", "shaded", "color"] {
+        let frame = client.get(&format!("/scenes/t/frame.png?output={output}")).await;
+        assert!(stages[&format!("{output}.png")] == frame.body, "{output}");
+    }
     let two = client.get("/scenes/t/frame.zip?outputs=depth,normal&width=20&height=10").await;
     assert_eq!(two.header("render-depth-range"), "0.1, 30");
     let two = entries(&two);

@@ -143,6 +143,35 @@ async fn jpeg_is_close_at_a_high_quality_and_small_at_a_low_one() {
 }
 
 #[tokio::test]
+async fn a_jpeg_of_values_shows_them_in_eight_bits() {
+    let client = sphere().await;
+    let png = picture(&client, "frame.png?output=depth").await;
+    let png = image::load_from_memory_with_format(&png, ImageFormat::Png).expect("a picture").into_luma16();
+    let jpeg = rgba(&picture(&client, "frame.jpg?output=depth&quality=100").await, ImageFormat::Jpeg);
+    for (exact, shown) in png.pixels().zip(jpeg.pixels()) {
+        let exact = f64::from(exact[0]) / 257.0;
+        assert!((exact - f64::from(shown[0])).abs() < 3.0 && shown[0] == shown[2], "{exact} and {shown:?}");
+    }
+    let reply = client.get("/scenes/t/frame.jpg?output=depth").await;
+    assert!(!reply.header("render-depth-range").is_empty());
+    let ids = picture(&client, "frame.jpg?output=ids").await;
+    assert_eq!(picture(&client, "frame.jpg?output=instance").await, ids);
+}
+
+#[tokio::test]
+async fn stages_are_pictures_in_every_format_of_colours() {
+    let client = sphere().await;
+    for stage in ["ids", "shadow_map", "tiles", "shaded"] {
+        let png = rgba(&picture(&client, &format!("frame.png?output={stage}")).await, ImageFormat::Png);
+        let webp = rgba(&picture(&client, &format!("frame.webp?output={stage}")).await, ImageFormat::WebP);
+        assert!(png == webp, "{stage}");
+        let jpeg = picture(&client, &format!("frame.jpg?output={stage}&quality=95")).await;
+        assert!(psnr_db(&png, &rgba(&jpeg, ImageFormat::Jpeg)) > 25.0, "{stage}");
+        client.get(&format!("/scenes/t/frame.exr?output={stage}")).await.problem(422);
+    }
+}
+
+#[tokio::test]
 async fn a_transparent_jpeg_lies_over_white() {
     let client = sphere().await;
     let jpeg = picture(&client, "frame.jpg?background=transparent&quality=95").await;
@@ -228,12 +257,7 @@ async fn an_unknown_format_is_a_406_that_names_those_there_are() {
 async fn what_a_format_cannot_hold_is_refused_by_name() {
     let client = Client::new();
     client.put_triangle().await;
-    for path in [
-        "frame.jpg?output=depth",
-        "frame.webp?output=instance",
-        "turntable.gif?output=depth",
-        "frame.jpg?output=instance",
-    ] {
+    for path in ["frame.webp?output=depth", "frame.webp?output=instance", "turntable.gif?output=depth"] {
         let problem = client.get(&format!("/scenes/t/{path}")).await.problem(406);
         let detail = problem["detail"].as_str().expect("a detail");
         assert!(detail.contains("16-bit") && detail.ends_with("ask for .png"), "{detail}");
@@ -245,5 +269,5 @@ async fn what_a_format_cannot_hold_is_refused_by_name() {
         assert!(detail.starts_with("must be color, is "), "{detail}");
     }
     // Refused before a scene is looked at for nothing, and also where the client names a known file.
-    client.get_with("/scenes/t/frame.jpg?output=depth", &[("if-none-match", "*")]).await.problem(406);
+    client.get_with("/scenes/t/frame.webp?output=depth", &[("if-none-match", "*")]).await.problem(406);
 }

@@ -171,7 +171,10 @@ async fn the_passes_that_run_are_those_that_take_time() {
     bare["post"] = json!([]);
     for document in [studio(), pointwise, empty, bare] {
         let (client, _) = planned(&document, "").await;
-        for output in ["color", "depth", "normal", "albedo", "instance", "wireframe"] {
+        let scene_and_stages = ["color", "depth", "normal", "albedo", "instance", "wireframe"]
+            .into_iter()
+            .chain(["ids", "shadow_map", "tiles", "shaded"]);
+        for output in scene_and_stages {
             let plan = client.get(&format!("/scenes/t/plan?output={output}")).await.json();
             let passes = plan["passes"].as_array().expect("a list");
             let frame = client.get(&format!("/scenes/t/frame.png?output={output}")).await;

@@ -109,7 +109,7 @@ async fn the_description_has_every_route_with_its_statuses() {
         }
         let parameters = operation["parameters"].as_array().expect("a list");
         let output = parameters.iter().find(|parameter| parameter["name"] == "output").expect("output");
-        assert!(!output["schema"]["enum"].as_array().expect("words").contains(&"depth".into()), "{stream}");
+        assert!(output["schema"]["enum"].as_array().expect("words").contains(&"shaded".into()), "{stream}");
     }
     assert!(!api.to_string().contains("{format}"));
 }

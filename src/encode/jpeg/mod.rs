@@ -12,7 +12,7 @@ mod tables;
 mod transform;
 
 use super::{colors, over_white::over_white};
-use crate::pipeline::{Cancelled, Frame, Work};
+use crate::pipeline::{Cancelled, Frame, Pixels, Work};
 use headers::{END_OF_IMAGE, headers, restart};
 use huffman::Coder;
 use std::borrow::Cow;
@@ -44,8 +44,8 @@ impl Chroma {
     }
 }
 
-/// Encodes a frame of colours at a `quality` of 1–100; what is transparent is laid over white, in linear
-/// light.
+/// Encodes a frame of colours at a `quality` of 1–100, or one of 16-bit values as greys; what is transparent is
+/// laid over white, in linear light.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -69,7 +69,14 @@ pub fn jpeg_with_comment(
     comment: &str,
     work: &Work,
 ) -> Result<Vec<u8>, Cancelled> {
-    let (pixels, opaque) = colors(frame);
+    let greys;
+    let (pixels, opaque) = match &frame.pixels {
+        Pixels::Gray16(values) => {
+            greys = grey(values);
+            (greys.as_slice(), true)
+        }
+        _ => colors(frame),
+    };
     let width = frame.width as usize;
     let chroma = if quality < FULL_CHROMA_QUALITY { Chroma::Quarter } else { Chroma::Full };
     let quantization = Quantization::of_quality(quality);
@@ -93,6 +100,15 @@ pub fn jpeg_with_comment(
     }
     bytes.extend(END_OF_IMAGE);
     Ok(bytes)
+}
+
+/// Values as the nearest of 256 greys.
+fn grey(values: &[u16]) -> Vec<[u8; 4]> {
+    let code = |value: u16| {
+        let [.., code] = ((u32::from(value) + 128) / 257).to_be_bytes();
+        [code, code, code, 255]
+    };
+    values.iter().map(|&value| code(value)).collect()
 }
 
 #[cfg(test)]

@@ -23,11 +23,6 @@ pub(super) fn expand(paths: &mut Map<String, Value>) {
                 retain_parameters(operation, |name| name != "output" && name != "quality")
             });
         }
-        if path.ends_with("/stream.mjpg") || path.ends_with("/events") {
-            let outputs =
-                words(|output| Format::Jpeg { quality: Format::DEFAULT_QUALITY }.drawn_as(output).is_ok());
-            operations(&mut item).for_each(|operation| narrow_outputs(operation, &outputs));
-        }
         let Some(stem) = path.strip_suffix(FORMAT) else {
             paths.insert(path, item);
             continue;

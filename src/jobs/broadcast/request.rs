@@ -1,7 +1,6 @@
 //! What a client wants to watch.
 
 use crate::encode::Format;
-use crate::jobs::LIVE_FORMAT;
 use crate::plan::FrameRequest;
 use crate::plan::request::Query;
 use std::ops::RangeInclusive;
@@ -31,10 +30,6 @@ impl StreamRequest {
         let is_frozen = query.text("t").is_some();
         let mut frame = FrameRequest::read(query);
         frame.quality = Some(frame.quality.unwrap_or(Format::DEFAULT_QUALITY));
-        if LIVE_FORMAT.drawn_as(frame.output).is_err() {
-            let word = frame.output.word();
-            query.fault("output", format!("{word} is a picture of 16-bit values, a stream has JPEGs"));
-        }
         Self { frame, is_frozen, fps }
     }
 

@@ -1,18 +1,22 @@
 //! Output: linear colour to bytes or floats, and what the data outputs show.
 
 mod colors;
+mod digits;
+mod heat;
+mod shadow_maps;
 mod wireframe;
 
 pub use colors::{Row, encode_frame, encode_tile, write_radiance};
+pub use shadow_maps::draw as draw_shadow_maps;
 pub use wireframe::draw as draw_wireframe;
 
 use super::geometry::Bins;
 use super::geometry::setup::Triangle;
 use super::tiles::cover::Region;
 use super::tiles::fragments::Entry;
-use super::tiles::{Scratch, Tile};
+use super::tiles::{Resolved, Scratch, Tile};
 use crate::math::View;
-use crate::plan::{Draw, Plan};
+use crate::plan::{Draw, Output, Plan};
 
 /// Writes a tile of 16-bit values: distances or instances.
 pub fn write_values(plan: &Plan, bins: &Bins, seen: &Scratch, tile: Tile<u16>) {
@@ -27,6 +31,47 @@ pub fn write_values(plan: &Plan, bins: &Bins, seen: &Scratch, tile: Tile<u16>) {
             };
         }
     }
+}
+
+/// Writes a tile of colours that stand for what is seen: for instances, or for how many triangles the tile
+/// lists.
+pub fn write_false_colors(plan: &Plan, bins: &Bins, seen: &Scratch, tile: Tile<[u8; 4]>) {
+    let side = 1usize << bins.grid.tile_shift;
+    if plan.output == Output::Tiles {
+        digits::write_count(seen.list().len(), side, tile);
+        return;
+    }
+    for (y, row) in tile.rows.into_iter().enumerate() {
+        for (x, pixel) in row.iter_mut().enumerate() {
+            *pixel = id_color(instance_code(seen.seen(y * side + x, bins), &plan.draws));
+        }
+    }
+}
+
+/// Writes how many fragments were shaded for each pixel of a tile.
+///
+/// # Panics
+/// If nobody has counted them.
+pub fn write_counts(resolved: &Resolved, tile: Tile<[u8; 4]>) {
+    let counts = resolved.counts.expect("the fragments of a picture of counts are counted");
+    for (row, counts) in tile.rows.into_iter().zip(counts.chunks(resolved.side)) {
+        for (pixel, &count) in row.iter_mut().zip(counts) {
+            *pixel = opaque(heat::of_fragments(count));
+        }
+    }
+}
+
+/// The colour of an instance's value: black for none; others far apart, and no two the same.
+///
+/// Fibonacci hashing: D. Knuth, "The Art of Computer Programming", volume 3, section 6.4. The odd factor is 2³²
+/// divided by the golden ratio.
+fn id_color(id: u16) -> [u8; 4] {
+    let [r, g, b, _] = u32::from(id).wrapping_mul(0x9E37_79B1).to_be_bytes();
+    opaque([r, g, b])
+}
+
+fn opaque([r, g, b]: [u8; 3]) -> [u8; 4] {
+    [r, g, b, 255]
 }
 
 /// Writes which triangle each pixel of a tile sees.

@@ -103,6 +103,11 @@ impl CubeMap {
         Ok(Self { sides, resolution: view.width, lens, filter })
     }
 
+    /// The maps of its sides.
+    pub(super) fn sides(&self) -> &[Option<DepthMap>; 6] {
+        &self.sides
+    }
+
     #[inline(always)]
     pub(super) fn visibility<S: Simd>(
         &self,

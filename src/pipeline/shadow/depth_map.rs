@@ -21,7 +21,7 @@ pub(super) type Tile = [f32; TILE_TEXELS];
 /// Depth of the nearest caster in each texel, reversed: 1 next to the light, 0 where there is none.
 /// Tiles that no caster touches take no memory.
 #[derive(Debug, PartialEq)]
-pub(super) struct DepthMap {
+pub struct DepthMap {
     /// Texels along a side.
     resolution: u32,
     /// Tiles in a row.
@@ -68,7 +68,8 @@ impl DepthMap {
 
     /// Texels along a side.
     #[inline(always)]
-    pub(super) fn resolution(&self) -> u32 {
+    #[must_use]
+    pub fn resolution(&self) -> u32 {
         self.resolution
     }
 
@@ -82,9 +83,15 @@ impl DepthMap {
         &self.tiles
     }
 
+    /// The stored depths of all casters, tile by tile.
+    pub fn depths(&self) -> impl Iterator<Item = f32> {
+        self.tiles.iter().flatten().flat_map(|tile| tile.iter().copied()).filter(|depth| *depth > 0.0)
+    }
+
     /// The stored depth; 0 outside the map.
     #[inline(always)]
-    pub(super) fn texel(&self, x: i32, y: i32) -> f32 {
+    #[must_use]
+    pub fn texel(&self, x: i32, y: i32) -> f32 {
         let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return 0.0 };
         let side = self.resolution as usize;
         if x >= side || y >= side {

@@ -96,6 +96,11 @@ impl DirectionalMap {
         Ok(Self { depth, filter })
     }
 
+    /// Its one map.
+    pub(super) fn depths(&self) -> &DepthMap {
+        &self.depth
+    }
+
     #[inline(always)]
     pub(super) fn visibility<S: Simd>(
         &self,

@@ -31,6 +31,7 @@ mod penumbra;
 mod pyramid;
 
 pub use cube::CubeMap;
+pub use depth_map::DepthMap;
 pub use directional::DirectionalMap;
 
 use super::shade::BLOCK;
@@ -79,6 +80,16 @@ pub fn render_maps(passes: &[ShadowPass], work: &Work) -> Result<Vec<ShadowMap>,
 }
 
 impl ShadowMap {
+    /// What the light sees: one map of parallel light, else the six sides around it, of which `None` are not
+    /// drawn.
+    #[must_use]
+    pub fn depths(&self) -> Vec<Option<&DepthMap>> {
+        match self {
+            Self::Directional(map) => vec![Some(map.depths())],
+            Self::Cube(map) => map.sides().iter().map(Option::as_ref).collect(),
+        }
+    }
+
     /// The part of the light that reaches the receivers of a block: 1 where all of it does, 0 where
     /// casters hide the whole light; only those whose bit is set in `asked` need an answer.
     ///

@@ -106,6 +106,22 @@ impl Fragments {
         self.sort(list, bins);
     }
 
+    /// How many there are of each pixel of a tile of `side` pixels a row.
+    #[must_use]
+    pub fn counts(&self, side: usize) -> Vec<u32> {
+        let mut counts = vec![0; side * side];
+        for fragment in &self.sorted {
+            // What is written beyond the pixels belongs to shared ones.
+            if let Some(count) = counts.get_mut(fragment.target as usize) {
+                *count += 1;
+            }
+        }
+        for shared in &self.shared {
+            counts[shared.pixel as usize] += shared.count;
+        }
+        counts
+    }
+
     fn clear(&mut self) {
         self.sorted.clear();
         self.runs.clear();

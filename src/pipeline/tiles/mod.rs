@@ -120,6 +120,8 @@ pub struct Shared<'a> {
     pub frames: Vec<ShadowFrame>,
     /// What is seen where nothing is.
     pub background: sky::Background,
+    /// Whether the fragments of each pixel are counted.
+    pub counts: bool,
     /// Samples a pixel.
     pub samples: u32,
     /// Them, from the nearest to the pixel's centre to the farthest.
@@ -215,7 +217,8 @@ impl Scratch {
         );
     }
 
-    /// Draws the tile's blended triangles over its resolved colours.
+    /// Draws the tile's blended triangles over its resolved colours, and counts their fragments if `counts`
+    /// is there.
     fn blend(
         &mut self,
         work: &Work,
@@ -223,12 +226,13 @@ impl Scratch {
         region: &Region,
         order: &SampleOrder,
         coverage: Option<&mut [f32]>,
+        counts: Option<&mut [u32]>,
     ) -> TileTimes {
         let side = 1 << shared.bins.grid.tile_shift;
         let tile = TileList { bins: shared.bins, list: &self.list, region, side, order };
         let opaque = Opaque { samples: &self.samples, blocks: &self.blocks };
         let behind = Behind { opaque, fragments: &self.fragments, sky: &self.sky };
-        let mut canvas = Canvas { colors: &mut self.colors, coverage };
+        let mut canvas = Canvas { colors: &mut self.colors, coverage, counts };
         let scratch = (&mut self.blend, &mut self.shade);
         blend::draw(work, shared, &tile, &self.blended, &behind, &mut canvas, scratch)
     }
@@ -266,6 +270,8 @@ pub struct Resolved<'a> {
     pub colors: &'a [Vec<f32>; 3],
     /// Share of each pixel that surfaces cover; `None` before a background that covers the rest.
     pub alpha: Option<&'a [f32]>,
+    /// Fragments that were shaded for each pixel; `None` where nobody asks.
+    pub counts: Option<&'a [u32]>,
     /// Pixels from one row to the next.
     pub side: usize,
 }
@@ -353,13 +359,16 @@ pub fn shade<P>(
     resolve::resolve(&scratch.fragments, &scratch.sky, shared.samples, side, &mut scratch.colors);
     let transparent = shared.background.is_transparent();
     let mut alpha = transparent.then(|| resolve::coverage(&scratch.fragments, shared.samples, side));
+    let mut counts = shared.counts.then(|| scratch.fragments.counts(side));
     times.resolve = clock.lap();
 
     if !scratch.blended.is_empty() {
-        times.add(&scratch.blend(work, shared, &region, &order, alpha.as_deref_mut()));
+        let (alpha, counts) = (alpha.as_deref_mut(), counts.as_deref_mut());
+        times.add(&scratch.blend(work, shared, &region, &order, alpha, counts));
         clock.lap();
     }
-    write(&Resolved { colors: &scratch.colors, alpha: alpha.as_deref(), side }, tile);
+    let (alpha, counts) = (alpha.as_deref(), counts.as_deref());
+    write(&Resolved { colors: &scratch.colors, alpha, counts, side }, tile);
     times.resolve += clock.lap();
     times
 }

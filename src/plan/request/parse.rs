@@ -12,7 +12,7 @@ use std::str::FromStr;
 /// Words of `shading`: those of a document.
 const SHADINGS: &[(&str, Shading)] = <Shading as crate::scene::document::words::Word>::WORDS;
 
-/// Words of `output`.
+/// Words of `output` for what the scene shows.
 const OUTPUTS: [(&str, Output); 6] = [
     ("color", Output::Color),
     ("depth", Output::Depth),
@@ -21,6 +21,18 @@ const OUTPUTS: [(&str, Output); 6] = [
     ("instance", Output::Instance),
     ("wireframe", Output::Wireframe),
 ];
+
+/// Words of `output` for what the pipeline does on the way.
+const STAGES: [(&str, Output); 4] = [
+    ("ids", Output::Ids),
+    ("shadow_map", Output::ShadowMap),
+    ("tiles", Output::Tiles),
+    ("shaded", Output::Shaded),
+];
+
+fn outputs() -> impl Iterator<Item = (&'static str, Output)> {
+    OUTPUTS.into_iter().chain(STAGES)
+}
 
 const NOT_AVAILABLE: &str = "is not available in this version";
 
@@ -33,7 +45,7 @@ impl FrameRequest {
     pub fn words(parameter: &str) -> Vec<&'static str> {
         match parameter {
             "shading" => SHADINGS.iter().map(|(word, _)| *word).collect(),
-            "output" => OUTPUTS.iter().map(|(word, _)| *word).collect(),
+            "output" => outputs().map(|(word, _)| word).collect(),
             _ => Vec::new(),
         }
     }
@@ -102,9 +114,9 @@ fn side(text: &str) -> Result<u32, String> {
 }
 
 fn output(text: &str) -> Result<Output, String> {
-    match OUTPUTS.iter().find(|(word, _)| *word == text) {
-        Some((_, output)) => Ok(*output),
-        None => Err(not_one_of(text, OUTPUTS.iter().map(|(word, _)| *word))),
+    match outputs().find(|(word, _)| *word == text) {
+        Some((_, output)) => Ok(output),
+        None => Err(not_one_of(text, outputs().map(|(word, _)| word))),
     }
 }
 
@@ -112,12 +124,18 @@ impl Output {
     /// What a query calls it.
     #[must_use]
     pub fn word(self) -> &'static str {
-        OUTPUTS.iter().find(|(_, output)| *output == self).map_or("", |(word, _)| word)
+        outputs().find(|(_, output)| *output == self).map_or("", |(word, _)| word)
     }
 
     /// Every output that a query can name.
     #[must_use]
     pub fn all() -> Vec<Self> {
+        outputs().map(|(_, output)| output).collect()
+    }
+
+    /// Those that show the scene, not a stage of the pipeline.
+    #[must_use]
+    pub fn of_the_scene() -> Vec<Self> {
         OUTPUTS.iter().map(|(_, output)| *output).collect()
     }
 
@@ -288,7 +306,10 @@ mod tests {
         assert_eq!(Output::list("depth, color"), Ok(vec![Output::Depth, Output::Color]));
         assert_eq!(Output::list("depth,depth"), Err("names depth more than once".to_owned()));
         let fault = Output::list("color,").unwrap_err();
-        assert_eq!(fault, "must be one of color, depth, normal, albedo, instance, wireframe, is \"\"");
+        assert_eq!(
+            fault,
+            "must be one of color, depth, normal, albedo, instance, wireframe, ids, shadow_map, tiles, shaded, is \"\""
+        );
         assert!(Output::all().into_iter().all(|output| Output::list(output.word()) == Ok(vec![output])));
     }
 

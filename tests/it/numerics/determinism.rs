@@ -71,6 +71,10 @@ fn data_outputs_are_the_same_to_the_byte() {
         Output::Instance,
         Output::Radiance,
         Output::Wireframe,
+        Output::Ids,
+        Output::ShadowMap,
+        Output::Tiles,
+        Output::Shaded,
     ];
     assert_same("demo", &scene, &outputs.map(|o| sized(161, 97, output(o))));
 }

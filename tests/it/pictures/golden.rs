@@ -496,10 +496,23 @@ fn golden_outputs() {
         ("albedo", Output::Albedo),
         ("instance", Output::Instance),
         ("wireframe", Output::Wireframe),
+        ("ids", Output::Ids),
+        ("tiles", Output::Tiles),
+        ("shaded", Output::Shaded),
+        ("shadow_map", Output::ShadowMap),
     ];
     for (name, what) in outputs {
         assert_golden(&format!("output/{name}"), &draw(&document, &Files::default(), &output(what)));
     }
+    let mut glass = document.clone();
+    glass["materials"]["red"]["opacity"] = json!(0.5);
+    let shaded = FrameRequest { output: Output::Shaded, ..samples(4) };
+    assert_golden("output/shaded_glass", &draw(&glass, &Files::default(), &shaded));
+    let lamp = json!({ "type": "point", "position": [-0.2, 1.6, 0.6], "shadow": { "resolution": 256 } });
+    let mut lit = document.clone();
+    lit["lights"]["lamp"] = lamp;
+    let shadow_maps = output(Output::ShadowMap);
+    assert_golden("output/shadow_maps_of_two_lights", &draw(&lit, &Files::default(), &shadow_maps));
     document["camera"]["orthographic"] = json!({ "height": 2.6 });
     document["camera"].as_object_mut().expect("a camera").remove("fov_y_deg");
     assert_golden("output/an_orthographic_camera", &draw(&document, &Files::default(), &samples(4)));

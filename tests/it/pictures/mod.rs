@@ -16,5 +16,6 @@ mod sampler;
 mod shadows;
 mod sky;
 mod soft_shadows;
+mod stages;
 mod textures;
 mod transparency;

@@ -278,8 +278,15 @@ fn fenced(camera: &Camera, samples: u32) -> Value {
 /// Draws every output of a document together, and compares each with what is drawn of it alone. Returns
 /// how many passes over the triangles it took, and how many looks at the tiles.
 fn draw_together(document: &Value) -> [usize; 2] {
-    let all =
-        [Output::Color, Output::Depth, Output::Normal, Output::Albedo, Output::Instance, Output::Wireframe];
+    let all = [
+        Output::Color,
+        Output::Depth,
+        Output::Normal,
+        Output::Albedo,
+        Output::Ids,
+        Output::Instance,
+        Output::Wireframe,
+    ];
     let scene = scene(document);
     let plans = all.map(|what| plan(&scene, &output(what)));
     let together = pipeline::render_each(&plans, &work()).expect("nobody cancels");

@@ -40,6 +40,16 @@ pub struct Canvas<'a> {
     pub colors: &'a mut [Vec<f32>; 3],
     /// Share of each pixel that surfaces cover; `None` before a background that covers the rest.
     pub coverage: Option<&'a mut [f32]>,
+    /// How many fragments each pixel has; `None` where nobody asks.
+    pub counts: Option<&'a mut [u32]>,
+}
+
+impl Canvas<'_> {
+    /// Counts layers that were shaded.
+    fn count(&mut self, layers: &Layers) {
+        let Some(counts) = &mut self.counts else { return };
+        layers.list.iter().for_each(|layer| counts[usize::from(layer.pixel)] += 1);
+    }
 }
 
 /// Draws the blended triangles `ids` over a tile. Stops early when the frame is cancelled.
@@ -85,6 +95,7 @@ impl Blend<'_> {
         self.times.raster += clock.lap();
         if taken == ids.len() {
             self.shade();
+            canvas.count(&self.scratch.layers);
             self.times.shade += clock.lap();
             self.composite(canvas);
             self.times.resolve += clock.lap();
