@@ -1,4 +1,5 @@
-//! `/`: the page and its files, embedded in the program.
+//! `/`: the page and its files, embedded in the program. A debug build reads them from `static/` at each
+//! request, so that who works on the page has only to reload it.
 
 use super::{App, etag};
 use axum::Router;
@@ -8,34 +9,15 @@ use axum::http::header::{
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use rust_embed::{Embed, EmbeddedFile};
+use std::borrow::Cow;
 
-/// A file of `static/`.
-#[derive(Debug)]
-struct Asset {
-    path: &'static str,
-    content_type: &'static str,
-    bytes: &'static [u8],
-}
+/// The files of `static/`, by their paths in it.
+#[derive(Embed)]
+#[folder = "static/"]
+struct Files;
 
-static INDEX: Asset = Asset {
-    path: "/",
-    content_type: "text/html; charset=utf-8",
-    bytes: include_bytes!("../../static/index.html"),
-};
-
-/// What the page refers to.
-static PARTS: [Asset; 2] = [
-    Asset {
-        path: "/page.css",
-        content_type: "text/css; charset=utf-8",
-        bytes: include_bytes!("../../static/page.css"),
-    },
-    Asset {
-        path: "/page.js",
-        content_type: "text/javascript; charset=utf-8",
-        bytes: include_bytes!("../../static/page.js"),
-    },
-];
+const INDEX: &str = "index.html";
 
 /// Nothing is loaded from another host, nothing but our own files runs, and no other site frames the
 /// page.
@@ -48,31 +30,64 @@ const POLICY: &str = "default-src 'self'; img-src 'self' blob: data:; \
     (status = 304, description = "If-None-Match names it"),
 ))]
 pub(super) async fn index(headers: HeaderMap) -> Response {
-    reply(&INDEX, &tag(INDEX.bytes), &headers)
+    reply(INDEX, &headers)
 }
 
-/// The routes of the page's parts.
+/// The routes of what the page refers to.
 pub(super) fn parts() -> Router<App> {
-    PARTS.iter().fold(Router::new(), |router, asset| {
-        let tag = tag(asset.bytes);
-        let serve = move |headers: HeaderMap| std::future::ready(reply(asset, &tag, &headers));
-        router.route(asset.path, get(serve))
+    Files::iter().filter(|path| path != INDEX).fold(Router::new(), |router, path| {
+        let route = format!("/{path}");
+        let serve = move |headers: HeaderMap| std::future::ready(reply(&path, &headers));
+        router.route(&route, get(serve))
     })
 }
 
-fn reply(asset: &Asset, tag: &str, headers: &HeaderMap) -> Response {
-    let validators = [(ETAG, tag), (CACHE_CONTROL, "no-cache")];
-    if etag::none_match_names(headers, tag) {
+fn reply(path: &str, headers: &HeaderMap) -> Response {
+    let Some(EmbeddedFile { data, metadata }) = Files::get(path) else {
+        return StatusCode::NOT_FOUND.into_response();
+    };
+    let tag = tag(metadata.sha256_hash());
+    let validators = [(ETAG, tag.as_str()), (CACHE_CONTROL, "no-cache")];
+    if etag::none_match_names(headers, &tag) {
         return (StatusCode::NOT_MODIFIED, validators).into_response();
     }
     let content = [
-        (CONTENT_TYPE, asset.content_type),
+        (CONTENT_TYPE, content_type(path)),
         (CONTENT_SECURITY_POLICY, POLICY),
         (X_CONTENT_TYPE_OPTIONS, "nosniff"),
     ];
-    (validators, content, asset.bytes).into_response()
+    (validators, content, body(data)).into_response()
 }
 
-fn tag(bytes: &[u8]) -> String {
-    format!("\"{}\"", blake3::hash(bytes).to_hex())
+fn tag(hash: [u8; 32]) -> String {
+    let digits: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
+    format!("\"{digits}\"")
+}
+
+fn body(data: Cow<'static, [u8]>) -> axum::body::Body {
+    match data {
+        Cow::Borrowed(bytes) => bytes.into(),
+        Cow::Owned(bytes) => bytes.into(),
+    }
+}
+
+fn content_type(path: &str) -> &'static str {
+    match path.rsplit_once('.') {
+        Some((_, "html")) => "text/html; charset=utf-8",
+        Some((_, "css")) => "text/css; charset=utf-8",
+        Some((_, "js")) => "text/javascript; charset=utf-8",
+        _ => "application/octet-stream",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_has_a_type() {
+        for path in Files::iter() {
+            assert_ne!(content_type(&path), "application/octet-stream", "{path}");
+        }
+    }
 }
