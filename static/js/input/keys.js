@@ -1,0 +1,52 @@
+// The keyboard, while the view has the focus or nothing has it.
+
+import * as actions from "../actions.js";
+import { isHeldKey } from "./motion.js";
+
+/** Function keys, as in the desktop programs; only while the view itself has the focus. */
+const FUNCTION_KEYS = {
+  F1: actions.toggleShadows,
+  F2: actions.toggleSoftShadows,
+  F3: actions.togglePost,
+  F4: actions.nextEffect,
+  F5: (app) => actions.toggleLights(app, "directional"),
+  F6: (app) => actions.toggleLights(app, "point"),
+};
+
+const KEYS = {
+  KeyF: actions.frameScene,
+  Home: actions.frameScene,
+  Period: actions.frameScene,
+  Escape: (app) => app.selection.select(null),
+  Digit0: (app) => app.selection.select(null),
+  Numpad0: (app) => app.selection.select(null),
+  Delete: actions.deleteSelected,
+  Backspace: actions.deleteSelected,
+};
+
+/** Takes keys for `view`; `help` shows what they are. */
+export function takeKeys(app, view, motion, help) {
+  document.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.key === "?" && !isText(event.target)) help();
+    if (event.target !== view && event.target !== document.body) return;
+    const act = actionOf(event, view);
+    if (act) act(app);
+    else if (isHeldKey(event.code)) motion.press(event.code);
+    else return;
+    event.preventDefault();
+  });
+  document.addEventListener("keyup", (event) => motion.release(event.code));
+  window.addEventListener("blur", () => motion.releaseAll());
+  view.addEventListener("blur", () => motion.releaseAll());
+}
+
+/** What the key does at once; `undefined` if it does nothing, or as long as it is held. */
+function actionOf({ code, target }, view) {
+  if (target === view && code in FUNCTION_KEYS) return FUNCTION_KEYS[code];
+  const digit = /^(?:Digit|Numpad)([1-9])$/.exec(code)?.[1];
+  if (digit) return (app) => actions.selectNth(app, Number(digit));
+  return KEYS[code];
+}
+
+const isText = (target) => target.matches?.("input, textarea, select, [contenteditable]") ?? false;

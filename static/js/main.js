@@ -1,0 +1,71 @@
+// The page: makes its parts and lets them know each other.
+
+import { openAddressed, openScene, showAddress } from "./address.js";
+import { byId } from "./dom.js";
+import { Instances } from "./instances.js";
+import { Live } from "./live.js";
+import { Notices } from "./notices.js";
+import { Plan } from "./plan.js";
+import { OpenScene } from "./scene.js";
+import { Selection } from "./selection.js";
+import { Viewpoint } from "./viewpoint.js";
+import { Motion } from "./input/motion.js";
+import { takeKeys } from "./input/keys.js";
+import { takePointer } from "./input/pointer.js";
+import { mountHelp } from "./help.js";
+import { mountPanels } from "./panels/index.js";
+import { mountToolbar } from "./toolbar.js";
+
+const view = byId("view");
+const app = makeApp();
+const help = mountHelp(byId("help"));
+takePointer(app, view, app.motion);
+takeKeys(app, view, app.motion, help);
+mountToolbar(app, byId("toolbar"), help);
+tellOfScene();
+tellOfConnection();
+mountPanels(app);
+window.addEventListener("hashchange", () => openAddressed(app));
+openAddressed(app);
+view.focus({ preventScroll: true });
+
+function makeApp() {
+  const scene = new OpenScene();
+  const live = new Live(scene, view);
+  const plan = new Plan(scene, live);
+  const camera = new Viewpoint(scene, live, plan);
+  const app = { scene, live, plan, camera, selection: new Selection(scene), instances: new Instances(scene), notices: new Notices(byId("notices")) };
+  app.motion = new Motion(app);
+  return app;
+}
+
+/** Name and address of the open scene, and what becomes of it. */
+function tellOfScene() {
+  const { scene, notices } = app;
+  const showName = () => {
+    const name = scene.document.name || scene.id;
+    byId("scene-name").textContent = name;
+    document.title = `${name} · rasterd`;
+  };
+  scene.addEventListener("change", showName);
+  scene.addEventListener("open", () => {
+    showName();
+    showAddress(scene.id);
+    notices.warn(scene.summary?.warnings ?? []);
+  });
+  scene.addEventListener("gone", () => {
+    const text = `“${scene.id}” was deleted, or the server has started anew without it.`;
+    notices.hold("The scene is no longer there", text, { "Open the demo": () => openScene(app, "demo") });
+  });
+}
+
+function tellOfConnection() {
+  const { live, notices } = app;
+  const lost = "The connection to the server is lost";
+  live.addEventListener("lost", () => notices.hold(lost, "The picture is the last one that came. Trying again…"));
+  live.addEventListener("back", () => {
+    notices.clear(lost);
+    notices.say("The connection is back");
+  });
+  live.addEventListener("problem", ({ detail: { problem } }) => notices.show(problem, "The picture could not be drawn"));
+}

@@ -1,0 +1,20 @@
+// What is at a pixel of the view.
+
+import { getJson } from "./server.js";
+
+/** The server's answer for (x, y) in pixels of the view; `instance: null` for the background or without an answer. */
+export async function pick({ live, scene }, x, y) {
+  const { viewSize, size, frame } = live;
+  const query = new URLSearchParams({
+    ...size,
+    x: pixel(x, viewSize.width, size.width),
+    y: pixel(y, viewSize.height, size.height),
+    t: frame?.t ?? 0,
+  });
+  const nothing = { instance: null, position: null };
+  return getJson(`${scene.path}/pick?${query}`).catch(() => nothing);
+}
+
+function pixel(at, viewSide, side) {
+  return Math.min(Math.max(Math.floor((at * side) / viewSide), 0), side - 1);
+}
