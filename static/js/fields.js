@@ -1,0 +1,144 @@
+// Form fields bound to the open scene's document: a label, a control, and the server's word on it.
+
+import { valueAt } from "./merge.js";
+import { Problem } from "./server.js";
+import { element } from "./dom.js";
+import { follow } from "./panels/follow.js";
+
+/** The fields by their elements, `.field[data-pointer]`. */
+const fields = new WeakMap();
+let made = 0;
+
+/**
+ * A field for the value at `pointer`.
+ *
+ * @param {OpenScene} scene
+ * @param {string} pointer JSON pointer of the value
+ * @param {{label: string, unit?: string, hint?: string}} words for people; `hint` explains a term
+ * @param {Control} control
+ *
+ * @typedef {object} Control what is between label and error
+ * @property {HTMLElement} element
+ * @property {HTMLElement[]} inputs what takes the focus; the label belongs to the first
+ * @property {(value: any, document: object) => void} show shows a value of the document, unless one is being typed
+ * @property {(label: HTMLElement) => void} [adopt] takes the label into service, say for dragging
+ */
+export function field(scene, pointer, words, control) {
+  const id = `field-${(made += 1)}`;
+  const label = labelOf(words, control, id);
+  const error = element("p", { className: "error", id: `${id}-error`, hidden: true });
+  const box = element("div", { className: "field", "data-pointer": pointer }, label, control.element, error);
+  for (const input of control.inputs) describe(input, error.id, words.hint);
+  control.adopt?.(label);
+  fields.set(box, { scene, pointer, control, error });
+  follow(scene, box, (document) => {
+    if (error.hidden) control.show(valueAt(document, pointer), document);
+  });
+  return box;
+}
+
+/** A label of one input; several inputs are a group, each with a name of its own. */
+function labelOf({ label, unit, hint }, { element: box, inputs }, id) {
+  const isGroup = inputs.length !== 1;
+  const made = element(isGroup ? "span" : "label", { className: "label", id: `${id}-label`, title: hint ?? "" }, label);
+  if (unit) made.append(" ", element("span", { className: "unit" }, unit));
+  if (isGroup) {
+    box.setAttribute("role", "group");
+    box.setAttribute("aria-labelledby", made.id);
+  } else {
+    inputs[0].id = id;
+    made.htmlFor = id;
+  }
+  return made;
+}
+
+function describe(input, errorId, hint) {
+  input.setAttribute("aria-describedby", errorId);
+  if (hint) input.setAttribute("aria-description", hint);
+}
+
+/**
+ * Shows what the server refused beneath the fields it belongs to, and what was wished in them. What comes of removing
+ * an entry is shown where it was to be removed, wherever the reference to it stands.
+ *
+ * Answers the errors that no visible field takes.
+ *
+ * @param {{pointer?: string, detail: string}[]} errors
+ * @param {object} [patch] that was refused
+ */
+export function showErrors(errors, patch) {
+  const texts = new Map();
+  const left = [];
+  for (const error of errors) {
+    const box = removedBy(patch) ?? fieldOf(error.pointer);
+    if (box) texts.set(box, [...(texts.get(box) ?? []), textOf(error, box)]);
+    else left.push(error);
+  }
+  for (const [box, lines] of texts) refuse(box, lines.join("\n"), patch);
+  return left;
+}
+
+/** Does `action`, and shows beneath a field what the server has against it. */
+export async function attempt(box, action) {
+  clearErrors();
+  try {
+    return await action();
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    refuse(box, problem.message);
+  }
+}
+
+/** Whether a visible field shows errors at this pointer. */
+export function showsErrorsAt(pointer) {
+  return fieldOf(pointer) !== undefined;
+}
+
+/** Takes all errors away; the fields show the document again. */
+export function clearErrors() {
+  for (const box of document.querySelectorAll(".field.refused")) {
+    const { scene, pointer, control, error } = fields.get(box);
+    mark(box, control, error, "");
+    control.show(valueAt(scene.document, pointer), scene.document);
+  }
+}
+
+function refuse(box, text, patch) {
+  const { pointer, control, error } = fields.get(box);
+  const wished = valueAt(patch, pointer);
+  if (wished !== undefined && wished !== null) control.show(wished, patch);
+  mark(box, control, error, text);
+}
+
+function mark(box, control, error, text) {
+  box.classList.toggle("refused", text !== "");
+  error.textContent = text;
+  error.hidden = text === "";
+  for (const input of control.inputs) input.setAttribute("aria-invalid", String(text !== ""));
+}
+
+/** The innermost visible field around a pointer. */
+function fieldOf(pointer) {
+  if (pointer === undefined) return undefined;
+  const around = visibleFields().filter((box) => `${pointer}/`.startsWith(`${box.dataset.pointer}/`));
+  return around.sort((a, b) => b.dataset.pointer.length - a.dataset.pointer.length)[0];
+}
+
+/** The visible field whose value the patch takes away. */
+function removedBy(patch) {
+  return visibleFields().find((box) => valueAt(patch, box.dataset.pointer) === null);
+}
+
+function visibleFields() {
+  return [...document.querySelectorAll(".field[data-pointer]")].filter((box) => box.checkVisibility());
+}
+
+/** An error of somewhere else says where. */
+function textOf({ pointer = "", detail }, box) {
+  const isHere = `${pointer}/`.startsWith(`${box.dataset.pointer}/`);
+  return isHere ? detail : `${placeName(pointer)}: ${detail}`;
+}
+
+function placeName(pointer) {
+  return pointer.split("/").slice(1).join(" › ").replaceAll("~1", "/").replaceAll("~0", "~");
+}

@@ -1,0 +1,25 @@
+// Which entry of a map of the document a panel is about.
+
+/** A name in the map `part` of the document, the first where nothing else is chosen; event `change`. */
+export class Chosen extends EventTarget {
+  /** @type {string | null} */
+  name = null;
+  #scene;
+  #part;
+
+  constructor(scene, part) {
+    super();
+    this.#scene = scene;
+    this.#part = part;
+    for (const type of ["open", "change"]) scene.addEventListener(type, () => this.select(this.name));
+  }
+
+  /** Chooses an entry; one that is not there gives way to the first. */
+  select(name) {
+    const entries = this.#scene.document?.[this.#part] ?? {};
+    const next = name in entries ? name : Object.keys(entries)[0] ?? null;
+    if (next === this.name) return;
+    this.name = next;
+    this.dispatchEvent(new Event("change"));
+  }
+}

@@ -1,0 +1,71 @@
+// Colours: one that a screen can show, and a factor for what is brighter than that.
+
+import { field } from "../../fields.js";
+import { element } from "../../dom.js";
+import { setAt } from "../edit.js";
+import { numberControl } from "./number.js";
+import { hexFromLinear, linearFromHex, linearOf } from "./srgb.js";
+
+const STRENGTH = { step: 0.05, min: 0 };
+
+/**
+ * A field for a colour. Within 0–1 it writes an sRGB string, which is what people mean by a colour; above, linear
+ * numbers.
+ *
+ * @param {{absent?: string}} words `absent` says what holds without a value, and then emptying the text removes it
+ */
+export function colorField(scene, pointer, words) {
+  return field(scene, pointer, words, colorControl(words, (value) => setAt(scene, pointer, value)));
+}
+
+function colorControl({ label, absent }, write) {
+  const swatch = element("input", { type: "color", "aria-label": label });
+  const text = element("input", {
+    type: "text", className: "hex", spellcheck: false, autocomplete: "off", placeholder: absent ?? "",
+    title: "As on the web: #rrggbb or #rgb", "aria-label": `${label}, as #rrggbb`,
+  });
+  const strength = numberControl(STRENGTH, (factor) => write(colorOf(swatch.value, factor)));
+  const times = element("label", { className: "times", title: "Brighter than a screen can show: times this" }, element("span", {}, "×"), strength.element);
+  strength.adopt(times.firstChild);
+  strength.inputs[0].setAttribute("aria-label", `${label}, times`);
+
+  swatch.addEventListener("input", () => write(colorOf(swatch.value, factorOf(strength))));
+  text.addEventListener("change", () => {
+    if (text.value.trim() === "" && absent !== undefined) return write(null);
+    const linear = linearFromHex(text.value);
+    // What is no colour goes to the server as it is, which says what is wrong with it.
+    write(linear ? colorOf(hexFromLinear(linear), factorOf(strength)) : text.value);
+  });
+  return {
+    element: element("div", { className: "color" }, swatch, text, times),
+    inputs: [text, swatch, strength.inputs[0]],
+    show: (color) => show(color, swatch, text, strength),
+  };
+}
+
+function show(color, swatch, text, strength) {
+  const linear = linearOf(color ?? [0, 0, 0]);
+  const factor = Math.max(1, ...linear);
+  swatch.value = hexFromLinear(linear.map((channel) => channel / factor));
+  swatch.title = `Linear RGB ${linear.map((channel) => Number(channel.toPrecision(4))).join(", ")}`;
+  if (document.activeElement !== text || !isColor(text.value)) text.value = textOf(color, swatch.value);
+  strength.show(color === undefined ? undefined : factor);
+}
+
+const isColor = (text) => linearFromHex(text) !== undefined;
+
+function textOf(color, hex) {
+  if (color === undefined) return "";
+  return typeof color === "string" && !isColor(color) ? color : hex;
+}
+
+function factorOf(strength) {
+  return strength.inputs[0].valueAsNumber || 1;
+}
+
+/** What the user means by a colour of the screen times a factor. */
+function colorOf(hex, factor) {
+  const linear = linearFromHex(hex).map((channel) => Number((channel * factor).toPrecision(5)));
+  if (Math.max(...linear) > 1) return linear;
+  return factor === 1 ? hex : hexFromLinear(linear);
+}

@@ -1,0 +1,138 @@
+// Directions of light: a ball that shows how it falls, to be turned by dragging, and the numbers.
+
+import { field } from "../../fields.js";
+import { sub } from "../../vec.js";
+import { element, svg } from "../../dom.js";
+import { setAt } from "../edit.js";
+import { whileDragging } from "./scrub.js";
+import { vectorControl } from "./vector.js";
+
+const RADIANS = Math.PI / 180;
+/** Of an arrow key; with Shift, of a fine step. */
+const STEP_DEG = 5;
+const FINE_STEP_DEG = 1;
+/** Straight up or down there is no azimuth left to turn. */
+const MAX_ELEVATION_DEG = 89.9;
+const DECIMALS = 4;
+
+/**
+ * A field for the way light travels. The ball is seen as the camera sees the scene, or a drag to the right would not
+ * move the light to the right in the picture.
+ */
+export function directionField(scene, pointer, words, camera) {
+  return field(scene, pointer, words, directionControl(words, camera, (value) => setAt(scene, pointer, value)));
+}
+
+function directionControl(words, camera, write) {
+  let angles = { azimuth: 0, elevation: 90 };
+  const ball = ballElement(words.label);
+  const numbers = vectorControl({ ...words, step: 0.05 }, write);
+  const turn = (azimuth, elevation) => {
+    angles = turned(angles, azimuth, elevation);
+    write(travelOf(angles));
+  };
+  ball.addEventListener("pointerdown", (down) => startDrag(ball, down, angles, camera, (start, x, y) => {
+    angles = start;
+    turn(x, y);
+  }));
+  ball.addEventListener("keydown", (event) => {
+    const step = event.shiftKey ? FINE_STEP_DEG : STEP_DEG;
+    const [x, y] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+    if (x === 0 && y === 0) return;
+    event.preventDefault();
+    turn(x * step, y * step);
+  });
+  repaintWith(camera, ball, () => paint(ball, seenFrom(camera, angles)));
+  return {
+    element: element("div", { className: "direction" }, ball, numbers.element),
+    inputs: [ball, ...numbers.inputs],
+    show: (travel) => {
+      numbers.show(travel);
+      if (travel) angles = anglesOf(travel);
+      paint(ball, seenFrom(camera, angles));
+    },
+  };
+}
+
+/** The light's angles for somebody who stands where the camera does. */
+function seenFrom({ current }, { azimuth, elevation }) {
+  const [x, , z] = current ? sub(current.position, current.target) : [0, 0, 1];
+  return { azimuth: azimuth - Math.atan2(x, z) / RADIANS, elevation };
+}
+
+/** The half turn of the ball's front goes across its width; at the back, the light goes against the hand. */
+function startDrag(ball, down, start, camera, move) {
+  down.preventDefault();
+  ball.focus();
+  const degreesPerPixel = 180 / ball.clientWidth;
+  const side = towardsLight(seenFrom(camera, start))[2] < 0 ? -1 : 1;
+  whileDragging((event) => {
+    const x = (event.clientX - down.clientX) * degreesPerPixel * side;
+    move(start, x, (down.clientY - event.clientY) * degreesPerPixel);
+  });
+}
+
+function turned({ azimuth, elevation }, right, up) {
+  const turn = (((azimuth + right + 180) % 360) + 360) % 360 - 180;
+  return { azimuth: turn, elevation: Math.min(Math.max(elevation + up, -MAX_ELEVATION_DEG), MAX_ELEVATION_DEG) };
+}
+
+/** From where light comes that travels along `travel`: azimuth 0° from +z, 90° from +x; elevation 90° from above. */
+function anglesOf([x, y, z]) {
+  return {
+    azimuth: Math.atan2(-x, -z) / RADIANS,
+    elevation: Math.atan2(-y, Math.hypot(x, z)) / RADIANS,
+  };
+}
+
+function travelOf(angles) {
+  return towardsLight(angles).map((part) => Number((-part).toFixed(DECIMALS)));
+}
+
+function towardsLight({ azimuth, elevation }) {
+  const level = Math.cos(elevation * RADIANS);
+  return [
+    Math.sin(azimuth * RADIANS) * level,
+    Math.sin(elevation * RADIANS),
+    Math.cos(azimuth * RADIANS) * level,
+  ];
+}
+
+function ballElement(label) {
+  const ball = element("div", {
+    className: "ball", tabIndex: 0, role: "slider", title: "Drag to turn the light; arrow keys turn it by 5°, with Shift by 1°",
+    "aria-label": `${label}: ball to turn with the arrow keys`, "aria-valuemin": -90, "aria-valuemax": 90,
+  });
+  ball.append(svg("svg", { viewBox: "-1.15 -1.15 2.3 2.3", "aria-hidden": "true" }, svg("circle", { r: 0.11 })));
+  return ball;
+}
+
+/** Paints again when the camera has moved, for as long as the ball is on the page. */
+function repaintWith(camera, ball, repaint) {
+  const onChange = () => {
+    if (ball.isConnected) repaint();
+    else camera.removeEventListener("change", onChange);
+  };
+  camera.addEventListener("change", onChange);
+}
+
+/** The ball from the front: lit from where the light comes, which is a dot, hollow when it is behind. */
+function paint(ball, angles) {
+  const [x, y, z] = towardsLight(angles);
+  const dot = ball.querySelector("circle");
+  dot.setAttribute("cx", x.toFixed(3));
+  dot.setAttribute("cy", (-y).toFixed(3));
+  ball.classList.toggle("from-behind", z < 0);
+  ball.style.setProperty("--light-x", `${(50 + 50 * x).toFixed(1)}%`);
+  ball.style.setProperty("--light-y", `${(50 - 50 * y).toFixed(1)}%`);
+  ball.setAttribute("aria-valuenow", Math.round(angles.elevation));
+  ball.setAttribute("aria-valuetext", `light from ${describe(x, y, z)}`);
+}
+
+/** `12° above, 30° to the right, from behind`, as the camera sees it. */
+function describe(x, y, z) {
+  const degrees = (sine) => Math.round(Math.abs(Math.asin(sine)) / RADIANS);
+  const height = `${degrees(y)}° ${y < 0 ? "below" : "above"}`;
+  const side = `${degrees(x)}° to the ${x < 0 ? "left" : "right"}`;
+  return `${height}, ${side}, ${z < 0 ? "behind what one sees" : "before what one sees"}`;
+}

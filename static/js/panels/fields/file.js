@@ -1,0 +1,67 @@
+// Files of the scene: names of what was uploaded, and ways to upload more.
+
+import { attempt, field } from "../../fields.js";
+import { ask, getJson, scenePath } from "../../server.js";
+import { button, element } from "../../dom.js";
+import { setAt } from "../edit.js";
+
+/** What the server can read as an image. */
+export const IMAGE_TYPES = ".png,.jpg,.jpeg,.webp,.bmp,.tga,.gif,.hdr";
+
+/**
+ * A field for the name of a file, which can be chosen from the user's disk or dropped here.
+ *
+ * @param {{accept: string}} words `accept` as of an input for files
+ * @param {(name: string) => void} [write] in place of setting the value
+ */
+export function fileField(scene, pointer, words, write = (name) => setAt(scene, pointer, name)) {
+  const take = ([file]) => attempt(made, async () => write(await upload(scene, file)));
+  const name = element("output", { className: "file-name" });
+  const chooser = fileChooser("Choose…", words.accept, take);
+  const made = field(scene, pointer, words, {
+    element: element("div", { className: "file" }, name, chooser),
+    inputs: [chooser],
+    show: (value) => { name.value = value ?? "none"; },
+  });
+  takesDrop(made, take);
+  return made;
+}
+
+/** A button that lets the user choose files. */
+export function fileChooser(label, accept, take, { multiple = false, ...properties } = {}) {
+  const input = element("input", { type: "file", accept, multiple });
+  input.addEventListener("change", () => {
+    if (input.files.length > 0) take([...input.files]);
+    input.value = "";
+  });
+  return button(label, () => input.click(), properties);
+}
+
+/** Files dropped on `target` are its own; the page around it does not get them. */
+export function takesDrop(target, take) {
+  const own = (event) => {
+    if (!event.dataTransfer.types.includes("Files")) return;
+    event.preventDefault();
+    event.stopPropagation();
+    target.classList.toggle("file-over", event.type === "dragenter" || event.type === "dragover");
+    if (event.type === "drop" && event.dataTransfer.files.length > 0) take([...event.dataTransfer.files]);
+  };
+  for (const type of ["dragenter", "dragover", "dragleave", "drop"]) target.addEventListener(type, own);
+}
+
+/** Puts a file into the scene, under a name that no other has, which it answers. */
+export async function upload(scene, file) {
+  const files = await getJson(scenePath(scene.id, "files"));
+  const name = freshFileName(files.map((there) => there.name), file.name);
+  await ask(scenePath(scene.id, "files", name), { method: "PUT", body: file });
+  return name;
+}
+
+/** Names are looked up without regard to case where they are not found as they are. */
+function freshFileName(taken, name) {
+  const known = new Set(taken.map((there) => there.toLowerCase()));
+  const [, stem, ending] = /^(.*?)(\.[^.]*)?$/s.exec(name);
+  let fresh = name;
+  for (let number = 2; known.has(fresh.toLowerCase()); number += 1) fresh = `${stem}-${number}${ending ?? ""}`;
+  return fresh;
+}

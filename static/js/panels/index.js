@@ -1,0 +1,50 @@
+// The panels beside the picture.
+
+import { byId } from "../dom.js";
+import { clearErrors, showErrors } from "../fields.js";
+import { Problem } from "../server.js";
+import { Chosen } from "./chosen.js";
+import { instancesPanel } from "./instances.js";
+import { lightsPanel } from "./lights.js";
+import { materialsPanel } from "./materials.js";
+import { meshesPanel } from "./meshes.js";
+import { postPanel } from "./post.js";
+import { renderPanel } from "./render.js";
+import { scenesPanel } from "./scenes.js";
+import { shadowPanel } from "./shadow.js";
+import { skyPanel } from "./sky.js";
+import { stagesPanel } from "./stages.js";
+import { texturesPanel } from "./textures.js";
+
+/** Puts the panels into `#panels`; they follow the open scene from then on. */
+export function mountPanels(app) {
+  const light = new Chosen(app.scene, "lights");
+  const instances = instancesPanel(app);
+  instances.open = true;
+  byId("panels").append(
+    scenesPanel(app),
+    stagesPanel(app),
+    instances,
+    materialsPanel(app),
+    texturesPanel(app),
+    meshesPanel(app),
+    lightsPanel(app, light),
+    shadowPanel(app, light),
+    skyPanel(app),
+    postPanel(app),
+    renderPanel(app),
+  );
+  tellOfRefusals(app);
+}
+
+/** What the server refuses is shown beneath its field, or as a message; it stands until the next edit. */
+function tellOfRefusals({ scene, notices }) {
+  scene.addEventListener("problem", ({ detail: { problem, patch } }) => {
+    const left = showErrors(problem.errors, patch);
+    if (left.length === 0 && problem.errors.length > 0) return;
+    const { message, title, status } = problem;
+    notices.show(new Problem(message, { title, status, errors: left }), "The change was refused");
+  });
+  scene.addEventListener("open", clearErrors);
+  scene.addEventListener("change", ({ detail }) => { if (detail.own) clearErrors(); });
+}

@@ -1,0 +1,13 @@
+// Actions that no field stands for.
+
+import { Problem } from "../server.js";
+
+/** Does `action`; what the server has against it becomes a message under `title`. */
+export async function tried(notices, title, action) {
+  try {
+    return await action();
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    notices.show(problem, title);
+  }
+}
