@@ -11,6 +11,15 @@ export async function frameScene(app) {
   if (bounds) app.motion.glide((camera) => app.camera.framed(camera, bounds));
 }
 
+/** Shows one instance. */
+export async function frameInstance(app, name) {
+  await app.instances.read(app.live.frame?.t);
+  const bounds = app.instances.named(name)?.bounds;
+  if (bounds) app.motion.glide((camera) => app.camera.framed(camera, bounds));
+}
+
+export const frameSelected = (app) => frameInstance(app, app.selection.name);
+
 // ── Switches ──
 
 export const areShadowsOn = ({ scene }) => scene.document.render.shadows;

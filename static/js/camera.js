@@ -3,7 +3,7 @@
 // `{position, target, up, fov_y_deg}` or, in place of the angle, `orthographic: {height}`, as in a scene document.
 // Sizes and pixels are those of the view, y down.
 
-import { add, clamp, corners, cross, degrees, dot, length, radians, rotated, sub, times, unit } from "./vec.js";
+import { add, clamp, corners, cross, degrees, dot, length, mix, radians, rotated, sub, times, unit } from "./vec.js";
 
 /** Closer to the vertical, turning would flip the picture over. */
 const MAX_PITCH_DEG = 89;
@@ -42,6 +42,17 @@ export function project(camera, point, size) {
   if (depth <= 0 && !camera.orthographic) return null;
   const scale = scaleAt(camera, depth, size);
   return { x: size.width / 2 + dot(offset, right) * scale, y: size.height / 2 - dot(offset, up) * scale, depth };
+}
+
+/** A segment in the picture, cut off at the camera: two pixels, or `null` if it lies behind. */
+export function projectSegment(camera, from, to, size) {
+  const { forward } = basis(camera);
+  const least = camera.orthographic ? -Infinity : distanceOf(camera) * 1e-3;
+  const depths = [from, to].map((point) => dot(sub(point, camera.position), forward));
+  if (depths.every((depth) => depth < least)) return null;
+  const cut = mix(from, to, (least - depths[0]) / (depths[1] - depths[0]));
+  const ends = [from, to].map((point, i) => (depths[i] < least ? cut : point));
+  return ends.map((point) => project(camera, point, size));
 }
 
 /** The ray that a pixel sees. */

@@ -13,7 +13,9 @@ import { Motion } from "./input/motion.js";
 import { takeKeys } from "./input/keys.js";
 import { takePointer } from "./input/pointer.js";
 import { mountHelp } from "./help.js";
+import { mountMarks } from "./marks.js";
 import { mountPanels } from "./panels/index.js";
+import { mountSelected } from "./selected.js";
 import { mountToolbar } from "./toolbar.js";
 
 const view = byId("view");
@@ -22,6 +24,7 @@ const help = mountHelp(byId("help"));
 takePointer(app, view, app.motion);
 takeKeys(app, view, app.motion, help);
 mountToolbar(app, byId("toolbar"), help);
+mountSelected(app, mountMarks(app, byId("marks")), byId("selected"));
 tellOfScene();
 tellOfConnection();
 mountPanels(app);
