@@ -33,7 +33,7 @@ export function mountHelp(dialog) {
   const title = element("h2", { id: "help-title" }, "Keys and gestures");
   const note = element("p", {}, "Keys work while the picture has the focus: click it, or reach it with Tab. This list: ?");
   const sections = Object.entries(SECTIONS).map(([heading, rows]) => section(heading, rows));
-  dialog.append(title, note, element("div", { className: "sections" }, ...sections), button("Close", () => dialog.close()));
+  dialog.append(title, note, element("div", { className: "sections" }, ...sections), button("Close", () => dialog.close(), { className: "close" }));
   return () => dialog.showModal();
 }
 

@@ -2,9 +2,13 @@
 
 import { openAddressed, openScene, showAddress } from "./address.js";
 import { byId } from "./dom.js";
+import { mountDrawer } from "./drawer.js";
+import { takeDrops } from "./drop.js";
 import { Instances } from "./instances.js";
 import { Live } from "./live.js";
 import { Notices } from "./notices.js";
+import { mountOverlay } from "./overlay.js";
+import { mountPlanPicture } from "./plan-picture.js";
 import { Plan } from "./plan.js";
 import { OpenScene } from "./scene.js";
 import { Selection } from "./selection.js";
@@ -23,8 +27,12 @@ const app = makeApp();
 const help = mountHelp(byId("help"));
 takePointer(app, view, app.motion);
 takeKeys(app, view, app.motion, help);
-mountToolbar(app, byId("toolbar"), help);
+mountToolbar(app, byId("toolbar"));
+mountDrawer(byId("panels"), byId("toggle-panels"));
+byId("open-help").addEventListener("click", help);
 mountSelected(app, mountMarks(app, byId("marks")), byId("selected"));
+mountOverlay(app, byId("overlay"), mountPlanPicture(app, byId("plan")));
+takeDrops(app, byId("drop-hint"));
 tellOfScene();
 tellOfConnection();
 mountPanels(app);
@@ -48,6 +56,7 @@ function tellOfScene() {
   const showName = () => {
     const name = scene.document.name || scene.id;
     byId("scene-name").textContent = name;
+    byId("scene-name").title = name;
     document.title = `${name} · rasterd`;
   };
   scene.addEventListener("change", showName);

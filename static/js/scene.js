@@ -64,6 +64,13 @@ export class OpenScene extends EventTarget {
     this.#send();
   }
 
+  /** Resolves when the server has answered all edits, well or not. */
+  saved() {
+    return new Promise((resolve) => {
+      for (const type of ["saved", "problem", "gone"]) this.addEventListener(type, resolve, { once: true });
+    });
+  }
+
   /** Sends what an earlier failure to reach the server left unsent. */
   resume() {
     this.#send();

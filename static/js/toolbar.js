@@ -2,6 +2,8 @@
 
 import * as actions from "./actions.js";
 import { button, byId, element } from "./dom.js";
+import { takeFiles } from "./drop.js";
+import { copyCommand, saveFrame, saveScene } from "./save.js";
 
 /** Each with its function key, and what it shows of the document. */
 const SWITCHES = [
@@ -19,13 +21,14 @@ const SWITCHES = [
 ];
 
 /** Fills the toolbar; it follows the document from then on. */
-export function mountToolbar(app, bar, help) {
+export function mountToolbar(app, bar) {
   const switches = SWITCHES.map((entry) => makeSwitch(app, entry));
-  bar.append(
-    element("div", { className: "group" }, ...switches.map(({ made }) => made)),
-    element("div", { className: "group" }, button("Frame all", () => actions.frameScene(app), { id: "frame-all", title: "Show the whole scene (F)" })),
-    element("div", { className: "group" }, button("?", help, { id: "open-help", "aria-label": "Keys and gestures", title: "Keys and gestures (?)" }), drawerButton()),
-  );
+  const groups = [
+    switches.map(({ made }) => made),
+    [button("Frame all", () => actions.frameScene(app), { id: "frame-all", title: "Show the whole scene (F)" })],
+    [...fileButtons(app), saveMenu(app)],
+  ];
+  bar.append(...groups.map((buttons) => element("div", { className: "group" }, ...buttons)));
   const follow = () => switches.forEach(({ update }) => update());
   app.scene.addEventListener("open", follow);
   app.scene.addEventListener("change", follow);
@@ -41,13 +44,27 @@ function makeSwitch(app, { key, label, act, isOn, isThere }) {
   return { made, update };
 }
 
-function drawerButton() {
-  const panels = byId("panels");
-  const isWide = matchMedia("(min-width: 801px)").matches;
-  panels.hidden = !isWide;
-  const made = button("Panels", () => {
-    panels.hidden = !panels.hidden;
-    made.setAttribute("aria-expanded", !panels.hidden);
-  }, { id: "toggle-panels", "aria-controls": "panels", "aria-expanded": isWide });
-  return made;
+function fileButtons(app) {
+  const input = element("input", { type: "file", multiple: true, hidden: true, id: "files" });
+  input.addEventListener("change", () => {
+    takeFiles(app, [...input.files]);
+    input.value = ""; // The same file may be chosen again.
+  });
+  return [button("Add files", () => input.click(), { id: "add-files", title: "Models (OBJ with MTL and textures), images, scenes (JSON); or drop them anywhere" }), input];
+}
+
+function saveMenu(app) {
+  const menu = element("div", { id: "save-menu", popover: "auto" },
+    button("Frame as PNG", () => saveFrame(app), { id: "save-png" }),
+    button("Scene as JSON", () => saveScene(app), { id: "save-json" }),
+    button("Copy as curl command", () => copyCommand(app), { id: "copy-curl" }));
+  menu.addEventListener("click", () => menu.hidePopover());
+  const opener = button("Save", () => {}, { id: "open-save", popoverTargetElement: menu });
+  menu.addEventListener("beforetoggle", () => {
+    const box = opener.getBoundingClientRect();
+    menu.style.top = `${box.bottom + 4}px`;
+    menu.style.left = `${Math.min(box.left, innerWidth - 190)}px`;
+  });
+  document.body.append(menu);
+  return opener;
 }

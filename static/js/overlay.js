@@ -1,0 +1,75 @@
+// What the frame on screen is and cost, in a corner of the picture.
+
+import { button, element } from "./dom.js";
+
+/** Told no more often than this: numbers that flicker cannot be read. */
+const INTERVAL_MS = 250;
+
+/** Where it may be open from the start. */
+const ROOMY = "(min-width: 801px)";
+
+/** Colour of a pass in bars; names and numbers stand beside it. */
+export const passHue = (name) => `var(--pass-${name})`;
+
+/** Fills the overlay; `openPlan` shows the plan as a picture. */
+export function mountOverlay(app, overlay, openPlan) {
+  const { live, plan } = app;
+  const summary = element("summary", {}, "Waiting for a frame…");
+  const facts = element("dl", { className: "facts" });
+  const bar = element("div", { className: "bar", role: "img" });
+  const legend = element("ul", { className: "legend" });
+  const leftOut = element("details", { className: "left-out" });
+  overlay.open = matchMedia(ROOMY).matches;
+  overlay.append(summary, facts, bar, legend, leftOut, button("Picture of the plan", openPlan, { id: "open-plan" }));
+
+  let told = 0;
+  live.addEventListener("frame", ({ detail }) => {
+    const now = performance.now();
+    if (now - told < INTERVAL_MS) return;
+    told = now;
+    tellFrame(detail);
+  });
+  plan.addEventListener("change", () => tellLeftOut(plan.current.left_out));
+
+  function tellFrame(frame) {
+    const passes = Object.entries(frame.milliseconds).filter(([name]) => name !== "queue");
+    const total = passes.reduce((sum, [, ms]) => sum + ms, 0);
+    summary.replaceChildren(`${frame.fps} fps · ${total.toFixed(1)} ms`);
+    facts.replaceChildren(...factsOf(frame, plan.current).flatMap(([term, value]) => [element("dt", {}, term), element("dd", {}, value)]));
+    bar.setAttribute("aria-label", passes.map(([name, ms]) => `${name} ${ms.toFixed(1)} milliseconds`).join(", "));
+    bar.replaceChildren(...passes.map(([name, ms]) => segment(name, ms / total)));
+    legend.replaceChildren(...passes.map(([name, ms]) => legendItem(name, ms)));
+  }
+
+  function tellLeftOut(entries) {
+    leftOut.hidden = entries.length === 0;
+    const items = entries.map(({ what, reason }) => element("li", {}, `${what}: ${reason}`));
+    const isOpen = leftOut.open;
+    leftOut.replaceChildren(element("summary", {}, `${entries.length} left out`), element("ul", {}, ...items));
+    leftOut.open = isOpen;
+  }
+}
+
+function factsOf({ number, revision, watchers, width, height, counts }, plan) {
+  return [
+    ["frame", number.toLocaleString()],
+    ["revision", revision.toLocaleString()],
+    ["watchers", watchers.toLocaleString()],
+    ["size", `${width} × ${height}`],
+    ["triangles", `${counts.drawn.toLocaleString()} of ${counts.triangles.toLocaleString()}`],
+    ["draws", plan?.draws.length.toLocaleString() ?? "–"],
+  ];
+}
+
+function segment(name, part) {
+  const made = element("span", { title: name });
+  made.style.flexGrow = part;
+  made.style.background = passHue(name);
+  return made;
+}
+
+function legendItem(name, ms) {
+  const swatch = element("span", { className: "swatch" });
+  swatch.style.background = passHue(name);
+  return element("li", { "data-pass": name }, swatch, `${name} `, element("output", {}, ms.toFixed(1)));
+}
