@@ -58,12 +58,12 @@ function castingLights({ document: { lights = {} } }) {
 
 /** What `nextEffect` goes through: one at a time, the last is nothing. */
 const EFFECTS = [
-  { name: "Tone mapping", post: [{ type: "tonemap", operator: "aces" }] },
+  { name: "Tone map", post: [{ type: "tonemap", operator: "aces" }] },
   { name: "Blur", post: [{ type: "blur", radius: 4 }] },
   { name: "Greys", post: [{ type: "grayscale" }] },
   { name: "Vignette", post: [{ type: "vignette", amount: 0.7 }] },
   { name: "Bloom", post: [{ type: "bloom", threshold: 0.7, intensity: 0.4 }] },
-  { name: "Sharpening", post: [{ type: "sharpen", amount: 1 }] },
+  { name: "Sharpen", post: [{ type: "sharpen", amount: 1 }] },
   { name: "FXAA", post: [{ type: "fxaa" }] },
   { name: "Sepia", post: [{ type: "color_matrix", matrix: [[0.39, 0.77, 0.19, 0], [0.35, 0.69, 0.17, 0], [0.27, 0.53, 0.13, 0]] }] },
   { name: "Edges", post: [{ type: "kernel", kernel: [[-1, -1, -1], [-1, 8, -1], [-1, -1, -1]] }] },
@@ -90,7 +90,7 @@ function isChain(chain, wanted) {
 }
 
 export function effectName(app) {
-  return EFFECTS[effectIndex(app.scene)]?.name ?? (isPostOn(app) ? "the scene's own" : "none");
+  return EFFECTS[effectIndex(app.scene)]?.name ?? (isPostOn(app) ? "own" : "none");
 }
 
 export function nextEffect(app) {

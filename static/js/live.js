@@ -9,8 +9,10 @@ const MAX_PIXELS = 2_000_000;
 const RESIZED_MS = 150;
 /** A stream that has shown nothing so long after its first event will not: some browsers have no streams. */
 const STREAM_PATIENCE_MS = 4000;
-/** An unchanged frame comes once a second, so after this the line may be dead. */
-const SILENCE_MS = 8000;
+/** An unchanged frame comes once a second; after this the line is dead, or a frame takes far too long. */
+const SILENCE_MS = 15_000;
+/** What was shown last is remembered this often. */
+const KEEP_MS = 1000;
 const [FIRST_RETRY_MS, LAST_RETRY_MS] = [250, 5000];
 
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
@@ -37,6 +39,7 @@ export class Live extends EventTarget {
   #turn = 0;
   #hasStreams = true;
   #heardAt = 0;
+  #keptAt = 0;
 
   constructor(scene, view) {
     super();
@@ -123,9 +126,16 @@ export class Live extends EventTarget {
   #take(frame) {
     this.frame = frame;
     this.#heardAt = performance.now();
+    this.#keep();
     if (!this.#hasStreams) this.#picture.show(this.path("frame.jpg", { t: frame.t }));
     this.#scene.see(frame.revision);
     this.#tell("frame", frame);
+  }
+
+  #keep() {
+    if (this.#heardAt - this.#keptAt < KEEP_MS) return;
+    this.#keptAt = this.#heardAt;
+    this.#picture.keep();
   }
 
   #doubtStreams(turn) {
@@ -175,14 +185,9 @@ export class Live extends EventTarget {
     body.cancel();
   }
 
-  async #listenForSilence() {
-    if (this.#events?.readyState !== EventSource.OPEN || performance.now() - this.#heardAt < SILENCE_MS) return;
-    const turn = this.#turn;
-    try {
-      await ask("/healthz", { signal: AbortSignal.timeout(LAST_RETRY_MS) });
-    } catch {
-      if (turn === this.#turn) this.#recover();
-    }
+  #listenForSilence() {
+    const isListening = this.#events !== null && this.#events.readyState !== EventSource.CLOSED;
+    if (isListening && performance.now() - this.#heardAt > SILENCE_MS) this.#recover();
   }
 
   #watchSize() {

@@ -69,7 +69,7 @@ function segment(name, part) {
 }
 
 function legendItem(name, ms) {
-  const swatch = element("span", { className: "swatch" });
+  const swatch = element("span", { className: "hue" });
   swatch.style.background = passHue(name);
   return element("li", { "data-pass": name }, swatch, `${name} `, element("output", {}, ms.toFixed(1)));
 }

@@ -1,25 +1,18 @@
 // The picture on screen: an <img> that shows a stream, or one still after the other.
 
+import { element } from "./dom.js";
+
 /** Keeps what is there on screen until the next has something to show. */
 export class Picture {
   #view;
   #shown = null;
   #coming = null;
+  /** Behind the image, with what it showed last: a stream that breaks off leaves a browser with nothing. */
+  #kept = element("canvas", { width: 0, height: 0 });
 
   constructor(view) {
     this.#view = view;
-  }
-
-  /** Shows what comes from `url`. The promise tells whether anything did; a later call makes it `false`. */
-  show(url) {
-    this.#drop(this.#coming);
-    const image = this.#make();
-    this.#coming = image;
-    return new Promise((resolve) => {
-      image.addEventListener("load", () => resolve(this.#take(image)), { once: true });
-      image.addEventListener("error", () => resolve(false), { once: true });
-      image.src = url;
-    });
+    view.prepend(this.#kept);
   }
 
   /** Whether something was asked for and has shown nothing yet. */
@@ -27,29 +20,33 @@ export class Picture {
     return this.#coming !== null;
   }
 
-  /** Ends the streams. What was shown stays, as far as the browser gives it away (Firefox: the first frame). */
-  stop() {
+  /** Shows what comes from `url`. The promise tells whether anything did; a later call makes it `false`. */
+  show(url) {
     this.#drop(this.#coming);
-    this.#coming = null;
-    if (this.#shown instanceof HTMLImageElement) this.#freeze();
+    const image = element("img", { alt: "", draggable: false, className: "coming" });
+    this.#kept.after(image);
+    this.#coming = image;
+    this.#view.ariaBusy = true;
+    return new Promise((resolve) => {
+      image.addEventListener("load", () => resolve(this.#take(image)), { once: true });
+      image.addEventListener("error", () => resolve(false), { once: true });
+      image.src = url;
+    });
   }
 
-  #freeze() {
-    const still = document.createElement("canvas");
-    [still.width, still.height] = [this.#shown.naturalWidth, this.#shown.naturalHeight];
-    if (still.width > 0) still.getContext("2d").drawImage(this.#shown, 0, 0);
-    this.#shown.before(still);
+  /** Remembers what is shown now, as far as the browser gives it away (Firefox: a stream's first frame). */
+  keep() {
+    if (!this.#shown?.naturalWidth) return;
+    [this.#kept.width, this.#kept.height] = [this.#shown.naturalWidth, this.#shown.naturalHeight];
+    this.#kept.getContext("2d").drawImage(this.#shown, 0, 0);
+  }
+
+  /** Ends the streams. What was shown stays. */
+  stop() {
+    this.keep();
+    this.#drop(this.#coming);
     this.#drop(this.#shown);
-    this.#shown = still;
-  }
-
-  #make() {
-    const image = document.createElement("img");
-    image.alt = "";
-    image.draggable = false;
-    image.className = "coming";
-    this.#view.prepend(image);
-    return image;
+    this.#coming = this.#shown = null;
   }
 
   #take(image) {
@@ -58,6 +55,7 @@ export class Picture {
     image.className = "";
     this.#shown = image;
     this.#coming = null;
+    this.#view.ariaBusy = false;
     return true;
   }
 

@@ -28,11 +28,11 @@ function contentOf(plan, frame) {
   const { settings, bytes } = plan;
   const megabytes = (bytes / 1e6).toFixed(1);
   const text = `${settings.width} × ${settings.height} pixels, ${settings.samples} samples each; ${megabytes} MB of working memory.`;
-  return [element("p", {}, text), picture(plan, frame), leftOut(plan.left_out)];
+  return [element("p", {}, text), picture(plan, frame), leftOut(plan.left_out), drawTable(plan.draws)];
 }
 
 function picture(plan, frame) {
-  const sources = [...sourceBoxes("Lights", plan.lights, lightText, "shadow"), ...sourceBoxes("Draws", plan.draws, drawText, "geometry")];
+  const sources = [...sourceBoxes("Lights", plan.lights, lightText, "shadow"), ...sourceBoxes("Draws", plan.draws, drawText, "geometry"), ...sourceBoxes("Effects", plan.post, effectText, "post")];
   const passesHeight = plan.passes.length * (BOX_HEIGHT + GAP);
   const sourcesHeight = sources.reduce((sum, { height }) => sum + height + GAP, 0);
   const height = Math.max(passesHeight, sourcesHeight) + GAP;
@@ -85,12 +85,22 @@ function sourceBoxes(title, entries, textOf, feeds) {
 }
 
 const lightText = ({ name, type, shadow }) => `${name}: ${type}, ${shadow ? `${shadow.filter} shadow, ${shadow.resolution} px` : "no shadow"}`;
+const effectText = ({ effects, kind }) => `${effects.join(" + ")}: ${kind}`;
 const drawText = ({ instance, triangles, transparent }) => `${instance}: ${triangles.toLocaleString()} triangles${transparent ? ", transparent" : ""}`;
 
 function leftOut(entries) {
   if (entries.length === 0) return element("p", {}, "Nothing is left out.");
   const items = entries.map(({ what, reason }) => element("li", {}, element("strong", {}, what), `: ${reason}`));
   return element("section", {}, element("h3", {}, "Left out"), element("ul", { className: "left-out" }, ...items));
+}
+
+/** Which way through the shading each instance takes. */
+function drawTable(draws) {
+  const row = (cell, values) => element("tr", {}, ...values.map((value) => element(cell, {}, value)));
+  const rows = draws.map(({ instance, mesh, material, triangles, variant }) =>
+    row("td", [instance, mesh, material ?? "–", triangles.toLocaleString(), variant.join(", ")]));
+  const head = element("thead", {}, row("th", ["Instance", "Mesh", "Material", "Triangles", "Shaded with"]));
+  return element("details", {}, element("summary", {}, "Draws, one by one"), element("table", {}, head, element("tbody", {}, ...rows)));
 }
 
 const shortened = (text, most) => (text.length > most ? `${text.slice(0, most - 1)}…` : text);

@@ -25,7 +25,7 @@ export function mountToolbar(app, bar) {
   const switches = SWITCHES.map((entry) => makeSwitch(app, entry));
   const groups = [
     switches.map(({ made }) => made),
-    [button("Frame all", () => actions.frameScene(app), { id: "frame-all", title: "Show the whole scene (F)" })],
+    [button("Frame", () => actions.frameScene(app), { id: "frame-all", title: "Show the whole scene (F)" })],
     [...fileButtons(app), saveMenu(app)],
   ];
   bar.append(...groups.map((buttons) => element("div", { className: "group" }, ...buttons)));
@@ -63,7 +63,7 @@ function saveMenu(app) {
   menu.addEventListener("beforetoggle", () => {
     const box = opener.getBoundingClientRect();
     menu.style.top = `${box.bottom + 4}px`;
-    menu.style.left = `${Math.min(box.left, innerWidth - 190)}px`;
+    menu.style.left = `${Math.min(box.left, innerWidth - 220)}px`;
   });
   document.body.append(menu);
   return opener;
