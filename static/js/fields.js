@@ -1,6 +1,6 @@
 // Form fields bound to the open scene's document: a label, a control, and the server's word on it.
 
-import { valueAt } from "./merge.js";
+import { pointerOf, valueAt } from "./merge.js";
 import { Problem } from "./server.js";
 import { element } from "./dom.js";
 import { follow } from "./panels/follow.js";
@@ -26,7 +26,7 @@ let made = 0;
 export function field(scene, pointer, words, control) {
   const id = `field-${(made += 1)}`;
   const label = labelOf(words, control, id);
-  const error = element("p", { className: "error", id: `${id}-error`, hidden: true });
+  const error = element("p", { className: "error", id: `${id}-error`, role: "alert", hidden: true });
   const box = element("div", { className: "field", "data-pointer": pointer }, label, control.element, error);
   for (const input of control.inputs) describe(input, error.id, words.hint);
   control.adopt?.(label);
@@ -70,7 +70,7 @@ export function showErrors(errors, patch) {
   const texts = new Map();
   const left = [];
   for (const error of errors) {
-    const box = removedBy(patch) ?? fieldOf(error.pointer);
+    const box = removedBy(patch) ?? fieldOf(error.pointer ?? changedBy(patch));
     if (box) texts.set(box, [...(texts.get(box) ?? []), textOf(error, box)]);
     else left.push(error);
   }
@@ -89,11 +89,6 @@ export async function attempt(box, action) {
   }
 }
 
-/** Whether a visible field shows errors at this pointer. */
-export function showsErrorsAt(pointer) {
-  return fieldOf(pointer) !== undefined;
-}
-
 /** Takes all errors away; the fields show the document again. */
 export function clearErrors() {
   for (const box of document.querySelectorAll(".field.refused")) {
@@ -104,9 +99,9 @@ export function clearErrors() {
 }
 
 function refuse(box, text, patch) {
-  const { pointer, control, error } = fields.get(box);
+  const { scene, pointer, control, error } = fields.get(box);
   const wished = valueAt(patch, pointer);
-  if (wished !== undefined && wished !== null) control.show(wished, patch);
+  if (wished !== undefined && wished !== null) control.show(wished, scene.document);
   mark(box, control, error, text);
 }
 
@@ -119,10 +114,19 @@ function mark(box, control, error, text) {
 
 /** The innermost visible field around a pointer. */
 function fieldOf(pointer) {
-  if (pointer === undefined) return undefined;
   const around = visibleFields().filter((box) => `${pointer}/`.startsWith(`${box.dataset.pointer}/`));
   return around.sort((a, b) => b.dataset.pointer.length - a.dataset.pointer.length)[0];
 }
+
+/** The pointer around all that a patch changes: what an error is about that does not say it, such as a limit. */
+function changedBy(patch) {
+  const entries = isObject(patch) ? Object.entries(patch) : [];
+  if (entries.length !== 1) return "";
+  const [[name, inner]] = entries;
+  return pointerOf(name) + changedBy(inner);
+}
+
+const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
 
 /** The visible field whose value the patch takes away. */
 function removedBy(patch) {
@@ -134,7 +138,7 @@ function visibleFields() {
 }
 
 /** An error of somewhere else says where. */
-function textOf({ pointer = "", detail }, box) {
+function textOf({ pointer = box.dataset.pointer, detail }, box) {
   const isHere = `${pointer}/`.startsWith(`${box.dataset.pointer}/`);
   return isHere ? detail : `${placeName(pointer)}: ${detail}`;
 }

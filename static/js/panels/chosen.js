@@ -12,6 +12,13 @@ export class Chosen extends EventTarget {
     this.#scene = scene;
     this.#part = part;
     for (const type of ["open", "change"]) scene.addEventListener(type, () => this.select(this.name));
+    scene.addEventListener("problem", ({ detail: { patch } }) => this.#keep(patch?.[part]));
+  }
+
+  /** An entry that could not be removed is chosen again, so that one sees why. */
+  #keep(refused = {}) {
+    const kept = Object.keys(refused).find((name) => refused[name] === null);
+    if (kept !== undefined) this.select(kept);
   }
 
   /** Chooses an entry; one that is not there gives way to the first. */

@@ -20,6 +20,7 @@ export function entryList(scene, part, chosen, label, rowOf = () => ({})) {
   const mark = () => {
     for (const [name, { pick }] of rows) pick.setAttribute("aria-pressed", String(name === chosen.name));
   };
+  const revealChosen = () => reveal(list, rows.get(chosen.name)?.item);
   follow(scene, list, (document) => {
     const entries = document[part];
     for (const name of rows.keys()) if (!(name in entries)) rows.delete(name);
@@ -28,7 +29,12 @@ export function entryList(scene, part, chosen, label, rowOf = () => ({})) {
     for (const [name, { show }] of rows) show?.(entries[name]);
     mark();
   });
-  chosen.addEventListener("change", mark);
+  chosen.addEventListener("change", () => {
+    mark();
+    revealChosen();
+  });
+  // It has no size while its panel is folded.
+  new ResizeObserver(revealChosen).observe(list);
   list.addEventListener("keydown", moveBetweenRows);
   return list;
 }
@@ -37,6 +43,13 @@ function makeRow(name, chosen, { lead, show }) {
   const pick = button(name, () => chosen.select(name), { className: "entry", "data-name": name });
   const item = element("li", {}, ...(lead ? [lead] : []), pick);
   return { item, pick, show };
+}
+
+/** Scrolls the list, and nothing around it, to where an item shows. */
+function reveal(list, item) {
+  if (!item) return;
+  const above = item.offsetTop - list.offsetTop;
+  list.scrollTop = Math.min(Math.max(list.scrollTop, above + item.offsetHeight - list.clientHeight), above);
 }
 
 /** Arrow keys go from name to name. */
@@ -72,9 +85,18 @@ export function entryEditor(scene, part, chosen, keyOf, build) {
   return host;
 }
 
+/** Where the focus goes when what had it is no longer there. */
+function focusChosen(list) {
+  (list.querySelector(".entry[aria-pressed=true]") ?? list.querySelector(".entry"))?.focus();
+}
+
 /** A button that removes an entry; what the server says against it is shown beneath. */
 export function removeField(scene, pointer, label) {
-  const remove = button(label, () => setAt(scene, pointer, null), { className: "danger", "data-action": "remove" });
+  const remove = button(label, () => {
+    const list = remove.closest(".panel").querySelector(".entries");
+    setAt(scene, pointer, null);
+    focusChosen(list);
+  }, { className: "danger", "data-action": "remove" });
   const made = field(scene, pointer, { label: "" }, { element: remove, inputs: [remove], show: () => {} });
   made.classList.add("bare");
   return made;

@@ -40,10 +40,10 @@ export function mountPanels(app) {
 /** What the server refuses is shown beneath its field, or as a message; it stands until the next edit. */
 function tellOfRefusals({ scene, notices }) {
   scene.addEventListener("problem", ({ detail: { problem, patch } }) => {
-    const left = showErrors(problem.errors, patch);
-    if (left.length === 0 && problem.errors.length > 0) return;
     const { message, title, status } = problem;
-    notices.show(new Problem(message, { title, status, errors: left }), "The change was refused");
+    const errors = problem.errors.length > 0 ? problem.errors : [{ detail: message }];
+    const left = showErrors(errors, patch);
+    if (left.length > 0) notices.show(new Problem(message, { title, status, errors: left }), "The change was refused");
   });
   scene.addEventListener("open", clearErrors);
   scene.addEventListener("change", ({ detail }) => { if (detail.own) clearErrors(); });

@@ -52,7 +52,10 @@ const lensOf = (camera) => (camera.orthographic ? "orthographic" : "perspective"
 
 function lensField(scene, camera) {
   const control = choiceControl(() => LENSES, (lens) => scene.edit({ camera: lensPatch(scene.document.camera, camera.current, lens) }));
-  return field(scene, "/camera", { label: "Lens" }, { ...control, show: (value) => control.show(lensOf(value)) });
+  return field(scene, "/camera/orthographic", { label: "Lens" }, {
+    ...control,
+    show: (_, { camera }) => control.show(lensOf(camera)),
+  });
 }
 
 /** What the camera looks at keeps its size in the picture. */

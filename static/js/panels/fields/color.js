@@ -29,8 +29,12 @@ function colorControl({ label, absent }, write) {
   strength.adopt(times.firstChild);
   strength.inputs[0].setAttribute("aria-label", `${label}, times`);
 
+  let isTyping = false;
+
   swatch.addEventListener("input", () => write(colorOf(swatch.value, factorOf(strength))));
+  text.addEventListener("input", () => { isTyping = true; });
   text.addEventListener("change", () => {
+    isTyping = false;
     if (text.value.trim() === "" && absent !== undefined) return write(null);
     const linear = linearFromHex(text.value);
     // What is no colour goes to the server as it is, which says what is wrong with it.
@@ -39,16 +43,18 @@ function colorControl({ label, absent }, write) {
   return {
     element: element("div", { className: "color" }, swatch, text, times),
     inputs: [text, swatch, strength.inputs[0]],
-    show: (color) => show(color, swatch, text, strength),
+    show: (color) => {
+      showOnScreen(color, swatch, strength);
+      if (!isTyping) text.value = textOf(color, swatch.value);
+    },
   };
 }
 
-function show(color, swatch, text, strength) {
+function showOnScreen(color, swatch, strength) {
   const linear = linearOf(color ?? [0, 0, 0]);
   const factor = Math.max(1, ...linear);
   swatch.value = hexFromLinear(linear.map((channel) => channel / factor));
   swatch.title = `Linear RGB ${linear.map((channel) => Number(channel.toPrecision(4))).join(", ")}`;
-  if (document.activeElement !== text || !isColor(text.value)) text.value = textOf(color, swatch.value);
   strength.show(color === undefined ? undefined : factor);
 }
 

@@ -37,12 +37,11 @@ export function fileChooser(label, accept, take, { multiple = false, ...properti
   return button(label, () => input.click(), properties);
 }
 
-/** Files dropped on `target` are its own; the page around it does not get them. */
+/** Files dropped on `target` are its own; the page leaves alone what is prevented. */
 export function takesDrop(target, take) {
   const own = (event) => {
     if (!event.dataTransfer.types.includes("Files")) return;
     event.preventDefault();
-    event.stopPropagation();
     target.classList.toggle("file-over", event.type === "dragenter" || event.type === "dragover");
     if (event.type === "drop" && event.dataTransfer.files.length > 0) take([...event.dataTransfer.files]);
   };
