@@ -74,7 +74,7 @@ async function addModels(app, files) {
   for (const file of models) await put(app, file);
   if (models.length === 0) return app.notices.say(`${files.length === 1 ? files[0].name : `${files.length} files`}: now among the scene's files`);
   const names = models.map((file) => addInstance(app, file.name));
-  await app.scene.saved();
+  await app.scene.settled();
   await showModel(app, names.at(-1));
 }
 

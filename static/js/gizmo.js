@@ -3,13 +3,14 @@
 import { basis, pointOnPlane, project, rayAt, scaleAt } from "./camera.js";
 import { svg } from "./dom.js";
 import { axesOf, scaleOf, turnedFurther } from "./transform.js";
+import { placeIn } from "./input/pointer.js";
 import { add, cross, degrees, dot, sub, times } from "./vec.js";
 
 /** Length of a handle, in pixels of the view. */
 const REACH_PX = 84;
 /** A shorter one points at the eye and cannot be dragged along. */
-const LEAST_PX = 24;
-/** Where an arm begins, outside of the handle at the centre. */
+const LEAST_PX = 14;
+/** Where an arm begins, outside of the handle at the centre if it is long enough. */
 const START_PX = 16;
 const RING_POINTS = 64;
 /** Of a ring's radius, how far behind its centre is still drawn: all of a ring that is seen from the front. */
@@ -73,11 +74,12 @@ export class Gizmo extends EventTarget {
     const { scene, camera, live, selection } = this.#app;
     if (event.button !== 0 || !camera.current) return;
     event.preventDefault(); // The view would turn the camera.
-    handle.ownerSVGElement.parentNode.focus({ preventScroll: true });
+    const marks = handle.ownerSVGElement;
+    marks.parentNode.focus({ preventScroll: true });
     handle.setPointerCapture(event.pointerId);
     const shown = { document: scene.document, instance: selection.instance, camera: camera.current, size: live.viewSize };
-    const drag = DRAGS[this.#mode](placeOf(shown), axis, positionIn(event, handle));
-    const follow = (move) => selection.edit(drag(positionIn(move, handle)));
+    const drag = DRAGS[this.#mode](placeOf(shown), axis, placeIn(marks, event));
+    const follow = (move) => selection.edit(drag(placeIn(marks, move)));
     const release = () => {
       handle.removeEventListener("pointermove", follow);
       handle.classList.remove("held");
@@ -86,11 +88,6 @@ export class Gizmo extends EventTarget {
     handle.addEventListener("pointermove", follow);
     handle.addEventListener("lostpointercapture", release, { once: true });
   }
-}
-
-function positionIn(event, handle) {
-  const box = handle.ownerSVGElement.getBoundingClientRect();
-  return { x: event.clientX - box.left, y: event.clientY - box.top };
 }
 
 /** What handles are drawn and dragged by; `null` if the instance's origin is behind the camera. */
@@ -117,7 +114,8 @@ function armPath({ camera, size, origin, centre, reach }, direction, mode) {
   if (length < LEAST_PX) return { d: "", end: centre };
   const [dx, dy] = [(end.x - centre.x) / length, (end.y - centre.y) / length];
   const tip = mode === "scale" ? dotPath(end, 6) : arrowPath(end, dx, dy);
-  const d = `M${centre.x + dx * START_PX} ${centre.y + dy * START_PX}L${end.x} ${end.y}${tip}`;
+  const start = Math.min(START_PX, length / 2);
+  const d = `M${centre.x + dx * start} ${centre.y + dy * start}L${end.x} ${end.y}${tip}`;
   return { d, end: { x: end.x + dx * 18, y: end.y + dy * 18 } };
 }
 

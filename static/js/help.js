@@ -34,7 +34,7 @@ export function mountHelp(dialog) {
   const note = element("p", {}, "Keys work while the picture has the focus: click it, or reach it with Tab. This list: ?");
   const sections = Object.entries(SECTIONS).map(([heading, rows]) => section(heading, rows));
   dialog.append(title, note, element("div", { className: "sections" }, ...sections), button("Close", () => dialog.close(), { className: "close" }));
-  return () => dialog.showModal();
+  return () => { if (!dialog.open) dialog.showModal(); };
 }
 
 function section(heading, rows) {

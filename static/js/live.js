@@ -112,7 +112,7 @@ export class Live extends EventTarget {
 
   async #showStream(turn) {
     const shows = await this.#picture.show(this.path("stream.mjpg"));
-    if (!shows && turn === this.#turn) this.#recover();
+    if (!shows && turn === this.#turn && this.#hasStreams) this.#recover();
   }
 
   #listen(turn) {
@@ -127,7 +127,7 @@ export class Live extends EventTarget {
     this.frame = frame;
     this.#heardAt = performance.now();
     this.#keep();
-    if (!this.#hasStreams) this.#picture.show(this.path("frame.jpg", { t: frame.t }));
+    if (!this.#hasStreams && !this.#picture.isWaiting) this.#picture.show(this.path("frame.jpg", { t: frame.t }));
     this.#scene.see(frame.revision);
     this.#tell("frame", frame);
   }
@@ -139,7 +139,10 @@ export class Live extends EventTarget {
   }
 
   #doubtStreams(turn) {
-    if (turn === this.#turn && this.#picture.isWaiting) this.#hasStreams = false;
+    if (turn !== this.#turn || !this.#picture.isWaiting) return;
+    this.#hasStreams = false;
+    this.#picture.stop();
+    this.#start();
   }
 
   #refuse(problem) {

@@ -15,7 +15,8 @@ import { Selection } from "./selection.js";
 import { Viewpoint } from "./viewpoint.js";
 import { Motion } from "./input/motion.js";
 import { takeKeys } from "./input/keys.js";
-import { takePointer } from "./input/pointer.js";
+import { Pointer } from "./input/pointer.js";
+import { Wheel } from "./input/wheel.js";
 import { mountHelp } from "./help.js";
 import { mountMarks } from "./marks.js";
 import { mountPanels } from "./panels/index.js";
@@ -25,8 +26,9 @@ import { mountToolbar } from "./toolbar.js";
 const view = byId("view");
 const app = makeApp();
 const help = mountHelp(byId("help"));
-takePointer(app, view, app.motion);
-takeKeys(app, view, app.motion, help);
+new Pointer(app, view);
+new Wheel(app, view);
+takeKeys(app, view, help);
 mountToolbar(app, byId("toolbar"));
 mountDrawer(byId("panels"), byId("toggle-panels"));
 byId("open-help").addEventListener("click", help);
@@ -73,11 +75,12 @@ function tellOfScene() {
 
 function tellOfConnection() {
   const { live, notices } = app;
-  const lost = "The connection to the server is lost";
+  const [lost, refused] = ["The connection to the server is lost", "The picture could not be drawn"];
   live.addEventListener("lost", () => notices.hold(lost, "The picture is the last one that came. Trying again…"));
   live.addEventListener("back", () => {
     notices.clear(lost);
     notices.say("The connection is back");
   });
-  live.addEventListener("problem", ({ detail: { problem } }) => notices.show(problem, "The picture could not be drawn"));
+  live.addEventListener("problem", ({ detail: { problem } }) => notices.show(problem, refused));
+  live.addEventListener("frame", () => notices.clear(refused));
 }

@@ -14,6 +14,7 @@ const EDGES = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((from) => [1, 2, 4].filter((bit) 
 
 export class Outline {
   #app;
+  #group;
   #paths;
   #timer = 0;
   /** What the silhouette on screen, or the one being made, belongs to. */
@@ -23,7 +24,8 @@ export class Outline {
     this.#app = app;
     // The dark line under the bright one shows on any ground.
     this.#paths = ["under", "over"].map((layer) => svg("path", { class: `outline ${layer}` }));
-    marks.append(svg("g", { id: "outline" }, ...this.#paths));
+    this.#group = svg("g", { id: "outline" }, ...this.#paths);
+    marks.append(this.#group);
   }
 
   /** Draws the outline of what is selected in the picture; `shown: null` draws none. */
@@ -44,11 +46,9 @@ export class Outline {
   }
 
   #show(path, kind) {
-    for (const element of this.#paths) {
-      element.setAttribute("d", path);
-      element.parentNode.dataset.kind = path ? kind : "none";
-      element.parentNode.dataset.instance = path ? this.#app.selection.name : "";
-    }
+    this.#group.dataset.kind = path ? kind : "none";
+    this.#group.dataset.instance = path ? this.#app.selection.name : "";
+    for (const element of this.#paths) element.setAttribute("d", path);
   }
 }
 

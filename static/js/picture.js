@@ -29,7 +29,7 @@ export class Picture {
     this.#view.ariaBusy = true;
     return new Promise((resolve) => {
       image.addEventListener("load", () => resolve(this.#take(image)), { once: true });
-      image.addEventListener("error", () => resolve(false), { once: true });
+      image.addEventListener("error", () => resolve(this.#giveUp(image)), { once: true });
       image.src = url;
     });
   }
@@ -57,6 +57,13 @@ export class Picture {
     this.#coming = null;
     this.#view.ariaBusy = false;
     return true;
+  }
+
+  #giveUp(image) {
+    if (image !== this.#coming) return false;
+    this.#drop(image);
+    this.#coming = null;
+    return false;
   }
 
   /** Without a source first, or a browser goes on reading the stream. */

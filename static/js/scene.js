@@ -30,7 +30,8 @@ export class OpenScene extends EventTarget {
   #confirmed = null;
   #etag = "";
   #revision = 0;
-  #sending = false;
+  /** Until the server has all edits: the promise of that. */
+  #sending = null;
   #reading = null;
   #settling = 0;
   #documents = new Map();
@@ -64,11 +65,10 @@ export class OpenScene extends EventTarget {
     this.#send();
   }
 
-  /** Resolves when the server has answered all edits, well or not. */
-  saved() {
-    return new Promise((resolve) => {
-      for (const type of ["saved", "problem", "gone"]) this.addEventListener(type, resolve, { once: true });
-    });
+  /** Resolves when the server has answered all edits, well or not, and the scene is read again. */
+  async settled() {
+    await this.#sending;
+    await this.refresh();
   }
 
   /** Sends what an earlier failure to reach the server left unsent. */
@@ -105,18 +105,26 @@ export class OpenScene extends EventTarget {
     }
   }
 
-  async #send() {
+  #send() {
     if (this.#sending) return;
-    this.#sending = true;
     const { id } = this;
-    let sent = false;
     clearTimeout(this.#settling);
+    this.#sending = this.#sendAll(id).then((sent) => {
+      this.#sending = null;
+      if (id !== this.id) this.#send();
+      else if (sent) this.#settling = setTimeout(() => this.refresh(), SETTLED_MS);
+    });
+  }
+
+  /** Sends patch after patch until nothing is left. Answers whether the server took any. */
+  async #sendAll(id) {
+    let sent = false;
     try {
       for (;;) {
         const patch = difference(this.#confirmed, this.document);
-        if (patch === undefined || id !== this.id) break;
+        if (patch === undefined || id !== this.id) return sent;
         const summary = await this.#sendOne(id, patch);
-        if (id !== this.id) break;
+        if (id !== this.id) return sent;
         sent = true;
         this.#confirmed = merged(this.#confirmed, patch);
         this.#revision = summary.revision;
@@ -125,11 +133,8 @@ export class OpenScene extends EventTarget {
       }
     } catch (problem) {
       this.#fail(problem, id);
-    } finally {
-      this.#sending = false;
+      return sent;
     }
-    if (id !== this.id) this.#send();
-    else if (sent) this.#settling = setTimeout(() => this.refresh(), SETTLED_MS);
   }
 
   async #sendOne(id, patch) {

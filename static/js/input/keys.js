@@ -1,4 +1,4 @@
-// The keyboard, while the view has the focus or nothing has it.
+// The keyboard, while the focus is on the view, on what lies around it, or nowhere.
 
 import * as actions from "../actions.js";
 import { isHeldKey } from "./motion.js";
@@ -25,11 +25,12 @@ const KEYS = {
 };
 
 /** Takes keys for `view`; `help` shows what they are. */
-export function takeKeys(app, view, motion, help) {
+export function takeKeys(app, view, help) {
+  const { motion } = app;
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.key === "?" && !isText(event.target)) help();
-    if (event.target !== view && event.target !== document.body) return;
+    if (!isForView(event.target, view)) return;
     const act = actionOf(event, view);
     if (act) act(app);
     else if (isHeldKey(event.code)) motion.press(event.code);
@@ -47,6 +48,12 @@ function actionOf({ code, target }, view) {
   const digit = /^(?:Digit|Numpad)([1-9])$/.exec(code)?.[1];
   if (digit) return (app) => actions.selectNth(app, Number(digit));
   return KEYS[code];
+}
+
+/** Whatever is on the picture lets keys through, as far as it needs none itself. */
+function isForView(target, view) {
+  const isAround = view.parentElement.contains(target) && !isText(target);
+  return isAround || target === document.body;
 }
 
 const isText = (target) => target.matches?.("input, textarea, select, [contenteditable]") ?? false;
