@@ -144,7 +144,7 @@ export function freeName(name, taken) {
   return free;
 }
 
-export function deleteInstance(app, name) {
+function deleteInstance(app, name) {
   app.scene.edit({ instances: { [name]: null } });
 }
 

@@ -14,6 +14,7 @@ export function mountMarks(app, marks) {
   };
   app.live.addEventListener("frame", draw);
   app.live.addEventListener("query", draw);
+  app.scene.addEventListener("change", ({ detail }) => { if (!detail.own) draw(); });
   app.selection.addEventListener("change", draw);
   app.instances.addEventListener("change", draw);
   gizmo.addEventListener("mode", draw);

@@ -30,7 +30,7 @@ export class Outline {
 
   /** Draws the outline of what is selected in the picture; `shown: null` draws none. */
   draw(shown) {
-    const key = shown && JSON.stringify([this.#app.selection.name, shown.revision, shown.size, shown.instance]);
+    const key = shown && JSON.stringify([this.#app.selection.name, shown.revision, shown.size, shown.camera, shown.instance]);
     if (key !== null && key === this.#outlined && !isMoving(shown)) return;
     clearTimeout(this.#timer);
     this.#outlined = key;

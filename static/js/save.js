@@ -25,7 +25,7 @@ export async function copyCommand(app) {
 }
 
 /** In single quotes, which a path of ours cannot hold: everything in it is percent-encoded. */
-export function commandOf(app) {
+function commandOf(app) {
   return `curl -o '${app.scene.id}.png' '${location.origin}${framePath(app)}'`;
 }
 

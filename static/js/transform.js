@@ -7,7 +7,7 @@ const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 export const scaleOf = ({ scale = 1 }) => (Array.isArray(scale) ? scale : [scale, scale, scale]);
 
 /** A vector turned by `rotation_deg`: about x, then y, then z. */
-export function turnedBy(v, rotationDeg) {
+function turnedBy(v, rotationDeg) {
   return rotationDeg.reduce((result, deg, axis) => rotated(result, AXES[axis], deg), v);
 }
 

@@ -54,11 +54,6 @@ export class Viewpoint extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
-  /** Moves to where `box` fills the view. */
-  frame(box) {
-    this.change((camera) => this.framed(camera, box));
-  }
-
   /** `camera` moved to where `box` fills the view. */
   framed(camera, box) {
     return framed(camera, box, this.#live.viewSize);
