@@ -144,10 +144,10 @@ export function freeName(name, taken) {
   return free;
 }
 
-function deleteInstance(app, name) {
-  app.scene.edit({ instances: { [name]: null } });
-}
-
-export function deleteSelected(app) {
-  if (app.selection.name !== null) deleteInstance(app, app.selection.name);
+/** Removes the selected instance; for a while it can be had back. */
+export function deleteSelected({ scene, selection, notices }) {
+  const { name, instance } = selection;
+  if (name === null) return;
+  scene.edit({ instances: { [name]: null } });
+  notices.say(`“${name}” is deleted`, { "Bring it back": () => scene.edit({ instances: { [name]: instance } }) });
 }

@@ -4,6 +4,9 @@ import { openScene } from "./address.js";
 import { freeName, frameInstance } from "./actions.js";
 import { Problem, ask, scenePath } from "./server.js";
 
+/** What the server can read. */
+const KNOWN = ["obj", "mtl", "json", "png", "jpg", "jpeg", "webp", "bmp", "tga", "gif", "hdr"];
+
 const extensionOf = ({ name }) => /\.([^.]+)$/.exec(name)?.[1].toLowerCase() ?? "";
 const stemOf = (name) => name.replace(/\.[^.]*$/, "");
 const isCarried = (event) => event.dataTransfer?.types.includes("Files");
@@ -23,7 +26,11 @@ export function takeDrops(app, hint) {
     event.preventDefault();
     // Entries must be taken before the first await: afterwards the list is empty.
     const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry()).filter(Boolean);
-    takeFiles(app, (await Promise.all(entries.map(filesUnder))).flat());
+    try {
+      takeFiles(app, (await Promise.all(entries.map(filesUnder))).flat());
+    } catch (error) {
+      app.notices.show(error, "The files could not be read");
+    }
   });
 }
 
@@ -41,7 +48,9 @@ async function filesUnder(entry) {
 }
 
 /** Files chosen or dropped: a scene's document with its files, or files for the open scene. */
-export async function takeFiles(app, files) {
+export async function takeFiles(app, all) {
+  const files = all.filter((file) => KNOWN.includes(extensionOf(file)));
+  tellUnknown(app, all.filter((file) => !files.includes(file) && !file.name.startsWith(".")));
   if (files.length === 0) return;
   const uploading = `Taking ${files.length === 1 ? files[0].name : `${files.length} files`}`;
   app.notices.hold(uploading, "Sending…");
@@ -54,6 +63,11 @@ export async function takeFiles(app, files) {
   } finally {
     app.notices.clear(uploading);
   }
+}
+
+function tellUnknown({ notices }, files) {
+  const detail = "is neither a model nor an image nor a scene";
+  notices.warn(files.map(({ name }) => ({ file: name, detail })), "Left out");
 }
 
 async function createScene(app, files) {
@@ -98,5 +112,12 @@ async function showModel(app, name) {
   if (!app.scene.document.instances?.[name]) return; // the server refused it, and has said why
   app.selection.select(name);
   app.notices.warn(app.scene.summary?.warnings ?? []);
+  app.notices.say(`“${name}” is in the scene`, { "Its z axis points up": () => turnZUp(app, name) });
+  await frameInstance(app, name);
+}
+
+async function turnZUp(app, name) {
+  app.scene.edit({ instances: { [name]: { rotation_deg: [-90, 0, 0] } } });
+  await app.scene.settled();
   await frameInstance(app, name);
 }

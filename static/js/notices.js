@@ -2,7 +2,8 @@
 
 import { button, element } from "./dom.js";
 
-const PASSING_MS = 4000;
+/** How long messages stay that go by themselves; longer where they offer something. */
+const [PASSING_MS, OFFERING_MS] = [4000, 12_000];
 
 /** One message per title: a new one takes the place of the one before. */
 export class Notices {
@@ -27,9 +28,10 @@ export class Notices {
   }
 
   /** Something that goes by itself. */
-  say(text) {
-    this.#put(text, "passing", []);
-    setTimeout(() => this.clear(text), PASSING_MS);
+  say(text, actions = {}) {
+    const notice = this.#put(text, "passing", [], actions);
+    const isOffer = Object.keys(actions).length > 0;
+    setTimeout(() => { if (this.#shown.get(text) === notice) this.clear(text); }, isOffer ? OFFERING_MS : PASSING_MS);
   }
 
   /** Something that stays until it is cleared. */
@@ -49,6 +51,7 @@ export class Notices {
     const notice = element("div", { className: "notice", "data-kind": kind }, element("h2", {}, title), ...parts, ...doing, close);
     this.#shown.set(title, notice);
     this.#list.append(notice);
+    return notice;
   }
 }
 

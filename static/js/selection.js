@@ -25,8 +25,8 @@ export class Selection extends EventTarget {
     this.dispatchEvent(new Event("change"));
   }
 
-  /** Changes fields of the selected instance. */
+  /** Changes fields of the selected instance, if there still is one. */
   edit(patch) {
-    this.#scene.edit({ instances: { [this.name]: patch } });
+    if (this.name !== null) this.#scene.edit({ instances: { [this.name]: patch } });
   }
 }
