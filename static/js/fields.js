@@ -1,6 +1,6 @@
 // Form fields bound to the open scene's document: a label, a control, and the server's word on it.
 
-import { pointerOf, valueAt } from "./merge.js";
+import { valueAt } from "./merge.js";
 import { Problem } from "./server.js";
 import { element } from "./dom.js";
 import { follow } from "./panels/follow.js";
@@ -70,8 +70,8 @@ export function showErrors(errors, patch) {
   const texts = new Map();
   const left = [];
   for (const error of errors) {
-    const box = removedBy(patch) ?? fieldOf(error.pointer ?? changedBy(patch));
-    if (box) texts.set(box, [...(texts.get(box) ?? []), textOf(error, box)]);
+    const box = removedBy(patch) ?? (error.pointer === undefined ? changedBy(patch) : fieldOf(error.pointer));
+    if (box) texts.set(box, [...(texts.get(box) ?? []), textOf(box, error)]);
     else left.push(error);
   }
   for (const [box, lines] of texts) refuse(box, lines.join("\n"), patch);
@@ -118,15 +118,14 @@ function fieldOf(pointer) {
   return around.sort((a, b) => b.dataset.pointer.length - a.dataset.pointer.length)[0];
 }
 
-/** The pointer around all that a patch changes: what an error is about that does not say it, such as a limit. */
+/** The one visible field that a patch changes: what an error is about that does not say it, such as a limit. */
 function changedBy(patch) {
-  const entries = isObject(patch) ? Object.entries(patch) : [];
-  if (entries.length !== 1) return "";
-  const [[name, inner]] = entries;
-  return pointerOf(name) + changedBy(inner);
+  const changed = visibleFields().filter((box) => valueAt(patch, box.dataset.pointer) !== undefined);
+  const innermost = changed.filter((box) => !changed.some((other) => isBelow(other, box)));
+  return innermost.length === 1 ? innermost[0] : undefined;
 }
 
-const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
+const isBelow = (inner, outer) => inner.dataset.pointer.startsWith(`${outer.dataset.pointer}/`);
 
 /** The visible field whose value the patch takes away. */
 function removedBy(patch) {
@@ -138,7 +137,7 @@ function visibleFields() {
 }
 
 /** An error of somewhere else says where. */
-function textOf({ pointer = box.dataset.pointer, detail }, box) {
+function textOf(box, { pointer = box.dataset.pointer, detail }) {
   const isHere = `${pointer}/`.startsWith(`${box.dataset.pointer}/`);
   return isHere ? detail : `${placeName(pointer)}: ${detail}`;
 }

@@ -12,19 +12,19 @@ export class Chosen extends EventTarget {
     this.#scene = scene;
     this.#part = part;
     for (const type of ["open", "change"]) scene.addEventListener(type, () => this.select(this.name));
-    scene.addEventListener("problem", ({ detail: { patch } }) => this.#keep(patch?.[part]));
+    scene.addEventListener("problem", ({ detail: { patch } }) => this.#keep(patch?.[part] ?? {}));
   }
 
   /** An entry that could not be removed is chosen again, so that one sees why. */
-  #keep(refused = {}) {
+  #keep(refused) {
     const kept = Object.keys(refused).find((name) => refused[name] === null);
     if (kept !== undefined) this.select(kept);
   }
 
-  /** Chooses an entry; one that is not there gives way to the first. */
+  /** Chooses an entry. One that is not there gives way to the one before, and that to the first. */
   select(name) {
     const entries = this.#scene.document?.[this.#part] ?? {};
-    const next = name in entries ? name : Object.keys(entries)[0] ?? null;
+    const next = [name, this.name, ...Object.keys(entries)].find((known) => known in entries) ?? null;
     if (next === this.name) return;
     this.name = next;
     this.dispatchEvent(new Event("change"));

@@ -33,7 +33,9 @@ export const EFFECTS = {
     hint: "What is bright glows",
     first: { threshold: 1, intensity: 0.2, radius: 8 },
     fields: (scene, at) => [
-      numberField(scene, `${at}/threshold`, { label: "Glows from", unit: "brightness", step: 0.05, min: 0, range: [0, 4] }),
+      numberField(scene, `${at}/threshold`, {
+        label: "Glows from", unit: "brightness", step: 0.05, min: 0, range: [0, 4],
+      }),
       numberField(scene, `${at}/intensity`, { label: "Intensity", step: 0.05, min: 0, range: [0, 2] }),
       numberField(scene, `${at}/radius`, RADIUS),
     ],
@@ -78,16 +80,16 @@ export const EFFECTS = {
 };
 
 function kernelFields(scene, at, { kernel }) {
-  const lines = kernel.map((_, i) => String(i + 1));
-  const sizes = KERNEL_SIDES.map((side) => button(`${side} × ${side}`, () => setAt(scene, `${at}/kernel`, resized(kernelOf(scene, at), side)),
-    { "aria-pressed": String(side === kernel.length) }));
+  const resize = (side) => setAt(scene, `${at}/kernel`, resized(valueAt(scene.document, `${at}/kernel`), side));
+  const sizes = KERNEL_SIDES.map((side) =>
+    button(`${side} × ${side}`, () => resize(side), { "aria-pressed": String(side === kernel.length) }));
   return [
     element("div", { className: "segments", role: "group", "aria-label": "Size of the kernel" }, ...sizes),
-    gridField(scene, `${at}/kernel`, { label: "Weights" }, lines.map((i) => `row ${i}`), lines.map((i) => `column ${i}`)),
+    gridField(scene, `${at}/kernel`, { label: "Weights" }, numbered("row", kernel), numbered("column", kernel)),
   ];
 }
 
-const kernelOf = (scene, at) => valueAt(scene.document, `${at}/kernel`);
+const numbered = (word, lines) => lines.map((_, i) => `${word} ${i + 1}`);
 
 /** The same weights about the centre. */
 function resized(kernel, side) {

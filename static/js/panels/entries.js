@@ -63,7 +63,9 @@ function moveBetweenRows(event) {
 
 /** A check box before a name, for a member of the entry that is `true` or `false`. */
 export function leadToggle(scene, part, name, member, label) {
-  const box = element("input", { type: "checkbox", title: label, "aria-label": `${label}: ${name}`, "data-member": member, "data-name": name });
+  const box = element("input", {
+    type: "checkbox", title: label, "aria-label": `${label}: ${name}`, "data-member": member, "data-name": name,
+  });
   box.addEventListener("change", () => setAt(scene, pointerOf(part, name, member), box.checked));
   return { lead: box, show: (entry) => { box.checked = entry[member]; } };
 }

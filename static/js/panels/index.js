@@ -16,6 +16,8 @@ import { skyPanel } from "./sky.js";
 import { stagesPanel } from "./stages.js";
 import { texturesPanel } from "./textures.js";
 
+const REFUSED = "The change was refused";
+
 /** Puts the panels into `#panels`; they follow the open scene from then on. */
 export function mountPanels(app) {
   const light = new Chosen(app.scene, "lights");
@@ -43,8 +45,12 @@ function tellOfRefusals({ scene, notices }) {
     const { message, title, status } = problem;
     const errors = problem.errors.length > 0 ? problem.errors : [{ detail: message }];
     const left = showErrors(errors, patch);
-    if (left.length > 0) notices.show(new Problem(message, { title, status, errors: left }), "The change was refused");
+    if (left.length > 0) notices.show(new Problem(message, { title, status, errors: left }), REFUSED);
   });
-  scene.addEventListener("open", clearErrors);
-  scene.addEventListener("change", ({ detail }) => { if (detail.own) clearErrors(); });
+  const clear = () => {
+    clearErrors();
+    notices.clear(REFUSED);
+  };
+  scene.addEventListener("open", clear);
+  scene.addEventListener("change", ({ detail }) => { if (detail.own) clear(); });
 }

@@ -39,10 +39,12 @@ function placementFields(scene, pointer, { scale }) {
   const scaleField = isPerAxis ? vectorField : numberField;
   return [
     vectorField(scene, `${pointer}/translation`, { label: "Position", unit: "world units", step: 0.05 }),
-    vectorField(scene, `${pointer}/rotation_deg`, { label: "Rotation", unit: "°", step: 1, hint: "About x, then y, then z" }),
+    vectorField(scene, `${pointer}/rotation_deg`, {
+      label: "Rotation", unit: "°", step: 1, hint: "About x, then y, then z",
+    }),
     scaleField(scene, `${pointer}/scale`, { label: "Scale", step: 0.05 }),
-    button(isPerAxis ? "Scale all axes alike" : "Scale each axis by itself", () => changeScaleAxes(scene, `${pointer}/scale`),
-      { className: "link", "data-action": "scale-axes" }),
+    button(isPerAxis ? "Scale all axes alike" : "Scale each axis by itself",
+      () => changeScaleAxes(scene, `${pointer}/scale`), { className: "link", "data-action": "scale-axes" }),
   ];
 }
 
@@ -104,7 +106,7 @@ function addShape(app, type) {
   return name;
 }
 
-/** Where the camera looks, so that one sees it. With the defaults that its fields show before the server has answered. */
+/** Where the camera looks, so that one sees it. The defaults are for its fields, until the server has answered. */
 function placed({ camera }, mesh) {
   return {
     mesh, translation: camera.current?.target ?? [0, 0, 0], rotation_deg: [0, 0, 0], scale: 1,

@@ -21,7 +21,8 @@ const LAMP_HEIGHT = 1.5;
 /** List with switches, add, and the fields of the chosen one, which the shadow panel is about as well. */
 export function lightsPanel({ scene, camera }, chosen) {
   const add = (base, light) => chosen.select(addEntry(scene, "lights", base, light));
-  const list = entryList(scene, "lights", chosen, "Lights", (name) => leadToggle(scene, "lights", name, "enabled", "On"));
+  const list = entryList(scene, "lights", chosen, "Lights",
+    (name) => leadToggle(scene, "lights", name, "enabled", "On"));
   const editor = entryEditor(scene, "lights", chosen, ({ type }) => type, (name, { type }, pointer) => [
     element("h3", {}, name),
     toggleField(scene, `${pointer}/enabled`, { label: "On" }),
@@ -33,8 +34,12 @@ export function lightsPanel({ scene, camera }, chosen) {
   ]);
   return panel("lights", "Lights", list,
     row(
-      button("Add a sun", () => add("sun", NEW_SUN), { id: "add-directional-light", title: "A directional light: from infinitely far" }),
-      button("Add a lamp", () => add("lamp", { ...NEW_LAMP, position: above(camera) }), { id: "add-point-light", title: "A point light" }),
+      button("Add a sun", () => add("sun", NEW_SUN), {
+        id: "add-directional-light", title: "A directional light: from infinitely far",
+      }),
+      button("Add a lamp", () => add("lamp", { ...NEW_LAMP, position: above(camera) }), {
+        id: "add-point-light", title: "A point light",
+      }),
     ),
     editor);
 }
@@ -45,7 +50,8 @@ function above(camera) {
 }
 
 function sunField(scene, pointer, camera) {
-  return directionField(scene, `${pointer}/direction`, { label: "Direction", hint: "The way its light travels" }, camera);
+  const words = { label: "Direction", hint: "The way its light travels" };
+  return directionField(scene, `${pointer}/direction`, words, camera);
 }
 
 function positionField(scene, pointer) {
@@ -58,5 +64,6 @@ function attenuationField(scene, pointer) {
   const part = (member, label) => numberField(scene, `${at}/${member}`, { label, step: 0.05, min: 0 });
   const words = { label: "Fading with distance", hint: "Divided by constant + linear · d + quadratic · d²" };
   const parts = [part("constant", "Constant"), part("linear", "Linear"), part("quadratic", "Quadratic")];
-  return field(scene, at, words, { element: element("div", { className: "columns" }, ...parts), inputs: [], show: () => {} });
+  const columns = element("div", { className: "columns" }, ...parts);
+  return field(scene, at, words, { element: columns, inputs: [], show: () => {} });
 }

@@ -23,7 +23,8 @@ function postSwitch(app) {
   const box = element("input", { type: "checkbox", id: "post-on" });
   box.addEventListener("change", () => togglePost(app));
   follow(app.scene, box, () => { box.checked = isPostOn(app); });
-  return element("div", { className: "field toggle" }, element("label", { className: "label", htmlFor: box.id }, "Effects on"), box);
+  const label = element("label", { className: "label", htmlFor: box.id }, "Effects on");
+  return element("div", { className: "field toggle" }, label, box);
 }
 
 function effectItem(scene, effect, i, count) {
@@ -46,7 +47,7 @@ function move(scene, i, step) {
   const chain = [...scene.document.post];
   [chain[i], chain[i + step]] = [chain[i + step], chain[i]];
   write(scene, chain);
-  const buttons = document.querySelectorAll(`#post-chain > li:nth-child(${i + step + 1}) [data-action^="move"]:enabled`);
+  const buttons = document.querySelectorAll(`#post-chain > :nth-child(${i + step + 1}) [data-action^="move"]:enabled`);
   buttons[step < 0 ? 0 : buttons.length - 1]?.focus();
 }
 

@@ -22,36 +22,57 @@ export function renderPanel({ scene, camera }) {
 }
 
 function pictureFields(scene) {
-  const side = { unit: "px", step: 16, min: 1, max: 16384, hint: "Of pictures that are saved where nobody says otherwise; the view here has its own size" };
+  const side = {
+    unit: "px", step: 16, min: 1, max: 16384,
+    hint: "Of pictures that are saved where nobody says otherwise; the view here has its own size",
+  };
   return [
     numberField(scene, "/render/width", { label: "Width", ...side }),
     numberField(scene, "/render/height", { label: "Height", ...side }),
     choiceField(scene, "/render/samples", { label: "Samples a pixel", hint: "More make smoother edges" }, SAMPLES),
-    choiceField(scene, "/render/cull", { label: "Faces left out", hint: "Closed bodies look the same without their back faces, and draw faster" }, CULLS),
+    choiceField(scene, "/render/cull", {
+      label: "Faces left out", hint: "Closed bodies look the same without their back faces, and draw faster",
+    }, CULLS),
     choiceField(scene, "/render/shading", { label: "Shading" }, [[null, "As the materials have it"], ...SHADINGS]),
-    numberField(scene, "/render/model_scale", { label: "Scale of all", step: 0.05, range: [0.1, 4], hint: "Scales all instances about the world's origin" }),
+    numberField(scene, "/render/model_scale", {
+      label: "Scale of all", step: 0.05, range: [0.1, 4], hint: "Scales all instances about the world's origin",
+    }),
   ];
 }
 
 function cameraFields(scene, camera) {
   const lens = rebuilt(scene, element("div", { className: "editor" }), ({ camera }) => lensOf(camera), ({ camera }) => [
     lensOf(camera) === "perspective"
-      ? numberField(scene, "/camera/fov_y_deg", { label: "Field of view", unit: "°", step: 1, min: 0.001, max: 179.9, range: [5, 120], hint: "From the lower to the upper edge" })
-      : numberField(scene, "/camera/orthographic/height", { label: "Height of the view", unit: "world units", step: 0.1, min: 0.001, range: [0.1, 20] }),
+      ? numberField(scene, "/camera/fov_y_deg", {
+        label: "Field of view", unit: "°", step: 1, min: 0.001, max: 179.9, range: [5, 120],
+        hint: "From the lower to the upper edge",
+      })
+      : numberField(scene, "/camera/orthographic/height", {
+        label: "Height of the view", unit: "world units", step: 0.1, min: 0.001, range: [0.1, 20],
+      }),
   ]);
   return [
     lensField(scene, camera),
     lens.element,
-    numberField(scene, "/camera/near", { label: "Near", unit: "world units", absent: "automatic", step: 0.05, min: 0.000001, hint: "Nothing nearer is drawn" }),
-    numberField(scene, "/camera/far", { label: "Far", unit: "world units", absent: "infinite", step: 1, min: 0.000001, hint: "Nothing farther is drawn" }),
-    numberField(scene, "/camera/orbit_deg_per_s", { label: "Turns by itself", unit: "°/s", step: 1, range: [-90, 90], hint: "About what it looks at" }),
+    numberField(scene, "/camera/near", {
+      label: "Near", unit: "world units", absent: "automatic", step: 0.05, min: 0.000001,
+      hint: "Nothing nearer is drawn",
+    }),
+    numberField(scene, "/camera/far", {
+      label: "Far", unit: "world units", absent: "infinite", step: 1, min: 0.000001,
+      hint: "Nothing farther is drawn",
+    }),
+    numberField(scene, "/camera/orbit_deg_per_s", {
+      label: "Turns by itself", unit: "°/s", step: 1, range: [-90, 90], hint: "About what it looks at",
+    }),
   ];
 }
 
 const lensOf = (camera) => (camera.orthographic ? "orthographic" : "perspective");
 
 function lensField(scene, camera) {
-  const control = choiceControl(() => LENSES, (lens) => scene.edit({ camera: lensPatch(scene.document.camera, camera.current, lens) }));
+  const change = (lens) => scene.edit({ camera: lensPatch(scene.document.camera, camera.current, lens) });
+  const control = choiceControl(() => LENSES, change);
   return field(scene, "/camera/orthographic", { label: "Lens" }, {
     ...control,
     show: (_, { camera }) => control.show(lensOf(camera)),

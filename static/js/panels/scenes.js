@@ -35,9 +35,10 @@ async function showScenes(app, list) {
 
 function sceneRow(app, { id, name }) {
   const isOpen = id === app.scene.id;
-  const words = [element("span", {}, name || "without a name"), element("code", {}, id)];
-  const open = button("", () => openScene(app, id), { className: "entry", "data-id": id, "aria-pressed": String(isOpen) });
-  open.append(...words);
+  const open = button(element("span", {}, name || "without a name"), () => openScene(app, id), {
+    className: "entry", "data-id": id, "aria-pressed": String(isOpen),
+  });
+  open.append(element("code", {}, id));
   return element("li", {}, open);
 }
 

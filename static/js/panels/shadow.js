@@ -12,6 +12,8 @@ const FILTERS = [["none", "None"], ["hard", "Hard"], ["pcf", "Even edge (PCF)"],
 const SHORT_FILTERS = [["none", "None"], ["hard", "Hard"], ["pcf", "PCF"], ["pcss", "PCSS"]];
 const CULLS = [["none", "All faces"], ["front", "All but front faces"], ["back", "All but back faces"]];
 
+const HALF_ANGLE = "Tangent of half the angle under which it is seen; the sun: 0.0047";
+
 /** The switch for all, a shortcut for all lights, and the fields of the light that is chosen in the lights panel. */
 export function shadowPanel({ scene }, chosen) {
   const keyOf = ({ type, shadow }) => [type, shadow?.filter];
@@ -30,7 +32,9 @@ export function shadowPanel({ scene }, chosen) {
 function allLights(scene) {
   const buttons = SHORT_FILTERS.map(([filter, label]) =>
     button(label, () => setForAll(scene, filter), { "data-filter": filter, "aria-label": `All lights: ${label}` }));
-  const line = element("div", { className: "segments", role: "group", "aria-label": "Shadows of all lights" }, ...buttons);
+  const line = element("div", {
+    className: "segments", role: "group", "aria-label": "Shadows of all lights",
+  }, ...buttons);
   follow(scene, line, ({ lights }) => {
     for (const each of buttons) {
       const isOfAll = Object.values(lights).every(({ shadow }) => (shadow?.filter ?? "none") === each.dataset.filter);
@@ -65,7 +69,8 @@ function lightChoice(scene, chosen) {
   select.addEventListener("change", () => chosen.select(select.value));
   chosen.addEventListener("change", update);
   follow(scene, select, update);
-  return element("div", { className: "field" }, element("label", { className: "label", htmlFor: select.id }, "Light"), select);
+  const label = element("label", { className: "label", htmlFor: select.id }, "Light");
+  return element("div", { className: "field" }, label, select);
 }
 
 function shadowFields(scene, at, { type, shadow }) {
@@ -75,17 +80,23 @@ function shadowFields(scene, at, { type, shadow }) {
 }
 
 function pcfFields(scene, at) {
-  return [numberField(scene, `${at}/radius`, { label: "Radius", unit: "texels", step: 0.1, min: 0, max: 1024, range: [0, 8], hint: "Of the filter: how wide the even edge is" })];
+  return [numberField(scene, `${at}/radius`, {
+    label: "Radius", unit: "texels", step: 0.1, min: 0, max: 1024, range: [0, 8],
+    hint: "Of the filter: how wide the even edge is",
+  })];
 }
 
 function pcssFields(scene, at, type) {
   const size = type === "point"
     ? { label: "Size of the light", unit: "world units", range: [0, 0.5], hint: "Its radius" }
-    : { label: "Size of the light", unit: "tangent", range: [0, 0.2], hint: "Tangent of half the angle under which it is seen; the sun: 0.0047" };
+    : { label: "Size of the light", unit: "tangent", range: [0, 0.2], hint: HALF_ANGLE };
   const taps = (member, label) => numberField(scene, `${at}/${member}`, { label, step: 1, min: 1, max: 1024 });
   return [
     numberField(scene, `${at}/light_radius`, { ...size, step: 0.001, min: 0 }),
-    numberField(scene, `${at}/search_radius`, { label: "Search radius", unit: "texels", absent: "from the size", step: 1, min: 0, max: 1024, hint: "How far blockers are looked for" }),
+    numberField(scene, `${at}/search_radius`, {
+      label: "Search radius", unit: "texels", absent: "from the size", step: 1, min: 0, max: 1024,
+      hint: "How far blockers are looked for",
+    }),
     taps("search_taps", "Samples to find blockers"),
     taps("filter_taps", "Samples to filter"),
   ];
@@ -93,8 +104,14 @@ function pcssFields(scene, at, type) {
 
 function mapFields(scene, at, type) {
   return [
-    numberField(scene, `${at}/resolution`, { label: "Resolution", unit: type === "point" ? "texels a side of each of 6 faces" : "texels a side", step: 128, min: 1, max: 16384 }),
-    numberField(scene, `${at}/bias`, { label: "Offset", unit: "× just enough", step: 0.1, min: 0, max: 1000, range: [0, 10], hint: "Bias against surfaces shading themselves, as a multiple of the offset that is just enough" }),
+    numberField(scene, `${at}/resolution`, {
+      label: "Resolution", unit: type === "point" ? "texels a side of each of 6 faces" : "texels a side",
+      step: 128, min: 1, max: 16384,
+    }),
+    numberField(scene, `${at}/bias`, {
+      label: "Offset", unit: "× just enough", step: 0.1, min: 0, max: 1000, range: [0, 10],
+      hint: "Bias against surfaces shading themselves, as a multiple of the offset that is just enough",
+    }),
     choiceField(scene, `${at}/cull`, { label: "What casts" }, CULLS),
   ];
 }

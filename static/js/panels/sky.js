@@ -46,7 +46,9 @@ export function skyPanel({ scene, camera }) {
   return panel("sky", "Sky",
     kindField(scene, wish, editor.refresh),
     editor.element,
-    colorField(scene, "/environment/ambient", { label: "Ambient light", hint: "Reaches every surface from everywhere" }));
+    colorField(scene, "/environment/ambient", {
+      label: "Ambient light", hint: "Reaches every surface from everywhere",
+    }));
 }
 
 /** What decides which fields a background has. */
@@ -77,7 +79,7 @@ function kindField(scene, wish, refresh) {
 }
 
 function kinds({ environment }) {
-  const named = Object.keys(environment?.backgrounds ?? {}).map((name) => [`name ${name}`, `“${name}” of the scene`]);
+  const named = Object.keys(environment.backgrounds).map((name) => [`name ${name}`, `“${name}” of the scene`]);
   return [...TYPES, ...named];
 }
 
@@ -91,7 +93,9 @@ function fieldsOf(scene, camera, document) {
       colorField(scene, `${at}/bottom`, { label: "Straight down" }),
     ],
     sky: () => skyFields(scene, camera, at, sun),
-    cubemap: () => FACES.map(([face, label]) => fileField(scene, `${at}/faces/${face}`, { label: `Looking along ${label}`, accept: IMAGE_TYPES })),
+    cubemap: () => FACES.map(([face, label]) => fileField(scene, `${at}/faces/${face}`, {
+      label: `Looking along ${label}`, accept: IMAGE_TYPES,
+    })),
     equirect: () => [fileField(scene, `${at}/file`, { label: "Panorama", accept: IMAGE_TYPES })],
     transparent: () => [note("Saved PNG and WebP pictures have alpha; here it shows as white.")],
   };
@@ -99,7 +103,9 @@ function fieldsOf(scene, camera, document) {
 }
 
 function skyFields(scene, camera, at, sun) {
-  const haze = numberField(scene, `${at}/turbidity`, { label: "Haze", unit: "turbidity", step: 0.1, min: 1, max: 20, range: [1, 12], hint: "2 is clear, 10 is hazy" });
+  const haze = numberField(scene, `${at}/turbidity`, {
+    label: "Haze", unit: "turbidity", step: 0.1, min: 1, max: 20, range: [1, 12], hint: "2 is clear, 10 is hazy",
+  });
   if (sun === undefined) {
     return [
       haze,
@@ -110,8 +116,11 @@ function skyFields(scene, camera, at, sun) {
   }
   return [
     haze,
-    directionField(scene, `${at}/sun_direction`, { label: "Sun of the sky", hint: "The way its light travels" }, camera),
-    button("Let the sun follow the light", () => setAt(scene, `${at}/sun_direction`, null), { className: "link", "data-action": "own-sun" }),
+    directionField(scene, `${at}/sun_direction`, {
+      label: "Sun of the sky", hint: "The way its light travels",
+    }, camera),
+    button("Let the sun follow the light", () => setAt(scene, `${at}/sun_direction`, null),
+      { className: "link", "data-action": "own-sun" }),
   ];
 }
 
@@ -121,7 +130,9 @@ function imagesWanted(scene, wish) {
     setAt(scene, HERE, background);
   };
   if (wish.type === "cubemap") return facesFields(scene, done);
-  return [fileField(scene, `${HERE}/file`, { label: "Panorama", accept: IMAGE_TYPES, hint: "Twice as wide as high; .hdr as well" },
+  return [fileField(scene, `${HERE}/file`, {
+    label: "Panorama", accept: IMAGE_TYPES, hint: "Twice as wide as high; .hdr as well",
+  },
     (file) => done({ type: "equirect", file }))];
 }
 
@@ -133,7 +144,8 @@ function facesFields(scene, done) {
     done({ type: "cubemap", faces: byFace });
   });
   const chooser = fileChooser("Choose six images…", IMAGE_TYPES, take, { multiple: true });
-  const made = field(scene, `${HERE}/faces`, { label: "Faces" }, { element: chooser, inputs: [chooser], show: () => {} });
+  const control = { element: chooser, inputs: [chooser], show: () => {} };
+  const made = field(scene, `${HERE}/faces`, { label: "Faces" }, control);
   takesDrop(made, take);
   return [made, note("Named by their faces (px, nx, py, ny, pz, nz), or in that order by name.")];
 }

@@ -5,15 +5,24 @@ import { note, panel } from "./parts.js";
 
 /** Outputs of the live view, with what one sees and where in the pipeline it comes from. */
 const STAGES = [
-  ["color", "Colour", "The finished picture, after shading, resolve and all post effects."],
-  ["depth", "Depth", "How far away each pixel's surface is, near dark and far bright: what the raster stage keeps to decide which triangle is in front."],
-  ["normal", "Normals", "Which way each surface faces, x, y and z as red, green and blue: interpolated by the raster stage, bent by normal and bump maps."],
-  ["albedo", "Albedo", "The surfaces' own colours with their maps, before any light falls on them: the first thing shading looks up."],
-  ["ids", "Instances", "Each instance in a colour of its own, as the raster stage tells them apart."],
-  ["wireframe", "Wireframe", "The edges of the triangles in front: what the geometry stage hands on."],
-  ["shadow_map", "Shadow map", "The scene as the first light with a shadow sees it, near dark and far bright: drawn before everything else."],
-  ["tiles", "Tiles", "The screen in tiles, brighter where more triangles fall: how the work is shared out before the raster stage."],
-  ["shaded", "Shaded samples", "How often each pixel is shaded: brighter along edges, where several triangles meet in one pixel."],
+  ["color", "Colour",
+    "The finished picture: what is left after shading, resolve and all post effects."],
+  ["depth", "Depth",
+    "How far away things are, near dark and far bright: what the raster stage compares to find the nearest triangle."],
+  ["normal", "Normals",
+    "Which way surfaces face, x, y and z as red, green and blue: what shading gets to work out how light falls on them."],
+  ["albedo", "Albedo",
+    "The surfaces' own colours with their maps: what shading begins with, before any light."],
+  ["ids", "Instances",
+    "A colour for each instance: what the raster stage has found to be in front at each pixel."],
+  ["wireframe", "Wireframe",
+    "The edges of the triangles in front: what the geometry stage hands to the raster stage."],
+  ["shadow_map", "Shadow maps",
+    "What each light sees, side by side, six for a lamp, bright near the light: drawn before everything else."],
+  ["tiles", "Tiles",
+    "How many triangles each tile lists, from blue over green to red: how the geometry stage shares out the work."],
+  ["shaded", "Shaded fragments",
+    "How many fragments are shaded for each pixel, from blue over green to red: where shading spends its time."],
 ];
 
 /** A group of radio buttons that set what the live view shows. */
@@ -25,7 +34,9 @@ export function stagesPanel({ live }) {
 
 function option(live, output, label, text) {
   const id = `stage-${output}`;
-  const radio = element("input", { type: "radio", name: "stage", id, value: output, checked: live.output === output, "aria-describedby": `${id}-text` });
+  const radio = element("input", {
+    type: "radio", name: "stage", id, value: output, checked: live.output === output, "aria-describedby": `${id}-text`,
+  });
   radio.addEventListener("change", () => { live.output = output; });
   return element("div", { className: "stage" }, radio,
     element("label", { htmlFor: id }, label),

@@ -20,20 +20,26 @@ const NEW_CHECKER = { checker: { colors: ["#888888", "#eeeeee"], cells: 8 }, fil
 /** List, add, and the fields of the chosen one. */
 export function texturesPanel({ scene, notices }) {
   const chosen = new Chosen(scene, "textures");
-  const addImage = ([file]) => tried(notices, "The image could not be added", async () => chosen.select(await addTexture(scene, file)));
+  const addImage = ([file]) =>
+    tried(notices, "The image could not be added", async () => chosen.select(await addTexture(scene, file)));
+  const addChecker = () => chosen.select(addEntry(scene, "textures", "checker", NEW_CHECKER));
   const editor = entryEditor(scene, "textures", chosen, ({ file }) => file !== undefined, (name, texture, pointer) => [
     element("h3", {}, name),
     ...(texture.file === undefined ? checkerFields : imageFields)(scene, pointer),
-    choiceField(scene, `${pointer}/filter`, { label: "Filter", hint: "How it is read between texels and from afar" }, FILTERS),
+    choiceField(scene, `${pointer}/filter`, {
+      label: "Filter", hint: "How it is read between texels and from afar",
+    }, FILTERS),
     choiceField(scene, `${pointer}/wrap`, { label: "Beyond its edges" }, WRAPS),
-    choiceField(scene, `${pointer}/color_space`, { label: "Colour space", hint: "By use: linear for normal, bump and opacity maps, else sRGB" }, COLOR_SPACES),
+    choiceField(scene, `${pointer}/color_space`, {
+      label: "Colour space", hint: "By use: linear for normal, bump and opacity maps, else sRGB",
+    }, COLOR_SPACES),
     removeField(scene, pointer, "Delete"),
   ]);
   return panel("textures", "Textures",
     entryList(scene, "textures", chosen, "Textures"),
     row(
       fileChooser("Add an image…", IMAGE_TYPES, addImage, { id: "add-image" }),
-      button("Add a checker", () => chosen.select(addEntry(scene, "textures", "checker", NEW_CHECKER)), { id: "add-checker" }),
+      button("Add a checker", addChecker, { id: "add-checker" }),
     ),
     editor);
 }

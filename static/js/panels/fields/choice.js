@@ -27,7 +27,8 @@ export function nameField(scene, pointer, words, part) {
 /** The control of {@link nameField}. */
 export function nameControl({ none }, part, write) {
   const first = none === undefined ? [] : [[null, none]];
-  return choiceControl((document) => [...first, ...Object.keys(document[part] ?? {}).map((name) => [name, name])], write);
+  const names = (document) => Object.keys(document[part]).map((name) => [name, name]);
+  return choiceControl((document) => [...first, ...names(document)], write);
 }
 
 /** The control of a choice of what `optionsOf(document)` gives. */
@@ -35,7 +36,7 @@ export function choiceControl(optionsOf, write) {
   const select = element("select");
   let options = [];
   select.addEventListener("change", () => write(options[select.selectedIndex][0]));
-  const show = (value = null, document = {}) => {
+  const show = (value = null, document) => {
     const offered = withValue(optionsOf(document), value);
     if (!same(offered, options)) {
       options = offered;

@@ -25,7 +25,8 @@ function colorControl({ label, absent }, write) {
     title: "As on the web: #rrggbb or #rgb", "aria-label": `${label}, as #rrggbb`,
   });
   const strength = numberControl(STRENGTH, (factor) => write(colorOf(swatch.value, factor)));
-  const times = element("label", { className: "times", title: "Brighter than a screen can show: times this" }, element("span", {}, "×"), strength.element);
+  const times = element("label", { className: "times", title: "Brighter than a screen can show: times this" });
+  times.append(element("span", {}, "×"), strength.element);
   strength.adopt(times.firstChild);
   strength.inputs[0].setAttribute("aria-label", `${label}, times`);
 
@@ -40,10 +41,12 @@ function colorControl({ label, absent }, write) {
     // What is no colour goes to the server as it is, which says what is wrong with it.
     write(linear ? colorOf(hexFromLinear(linear), factorOf(strength)) : text.value);
   });
+  const box = element("div", { className: "color" }, swatch, text, times);
   return {
-    element: element("div", { className: "color" }, swatch, text, times),
+    element: box,
     inputs: [text, swatch, strength.inputs[0]],
     show: (color) => {
+      box.classList.toggle("absent", color === undefined);
       showOnScreen(color, swatch, strength);
       if (!isTyping) text.value = textOf(color, swatch.value);
     },

@@ -100,7 +100,8 @@ function towardsLight({ azimuth, elevation }) {
 
 function ballElement(label) {
   const ball = element("div", {
-    className: "ball", tabIndex: 0, role: "slider", title: "Drag to turn the light; arrow keys turn it by 5°, with Shift by 1°",
+    className: "ball", tabIndex: 0, role: "slider",
+    title: "Drag to turn the light; arrow keys turn it by 5°, with Shift by 1°",
     "aria-label": `${label}: ball to turn with the arrow keys`, "aria-valuemin": -90, "aria-valuemax": 90,
   });
   ball.append(svg("svg", { viewBox: "-1.15 -1.15 2.3 2.3", "aria-hidden": "true" }, svg("circle", { r: 0.11 })));

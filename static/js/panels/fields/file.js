@@ -15,7 +15,7 @@ export const IMAGE_TYPES = ".png,.jpg,.jpeg,.webp,.bmp,.tga,.gif,.hdr";
  * @param {(name: string) => void} [write] in place of setting the value
  */
 export function fileField(scene, pointer, words, write = (name) => setAt(scene, pointer, name)) {
-  const take = ([file]) => attempt(made, async () => write(await upload(scene, file)));
+  const take = ([file]) => attempt(made, () => uploadFor(scene, file, write));
   const name = element("output", { className: "file-name" });
   const chooser = fileChooser("Choose…", words.accept, take);
   const made = field(scene, pointer, words, {
@@ -46,6 +46,20 @@ export function takesDrop(target, take) {
     if (event.type === "drop" && event.dataTransfer.files.length > 0) take([...event.dataTransfer.files]);
   };
   for (const type of ["dragenter", "dragover", "dragleave", "drop"]) target.addEventListener(type, own);
+}
+
+/**
+ * Uploads a file and lets `use(name)` put its name into the document; answers what `use` does. If the document does
+ * not come to have it, the file goes again.
+ */
+export async function uploadFor(scene, file, use) {
+  const { id } = scene;
+  const name = await upload(scene, file);
+  const used = use(name);
+  await scene.settled();
+  const isUsed = JSON.stringify(scene.document).includes(JSON.stringify(name));
+  if (scene.id === id && !isUsed) await ask(scenePath(id, "files", name), { method: "DELETE" });
+  return used;
 }
 
 /** Puts a file into the scene, under a name that no other has, which it answers. */

@@ -28,8 +28,10 @@ export function numberControl({ step = 0.1, min = -Infinity, max = Infinity, ran
   if (Number.isFinite(max)) input.max = max;
   const slider = range && sliderOf(range, step);
   let isTyping = false;
+  let last;
 
   const show = (value) => {
+    last = value;
     if (isTyping) return;
     const text = value === undefined ? "" : String(short(value));
     if (input.value !== text) input.value = text;
@@ -55,6 +57,10 @@ export function numberControl({ step = 0.1, min = -Infinity, max = Infinity, ran
   input.addEventListener("change", commit);
   input.addEventListener("keydown", (event) => {
     if (event.key === "Enter") commit();
+    if (event.key === "Escape") {
+      isTyping = false;
+      show(last);
+    }
     const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (direction === undefined) return;
     event.preventDefault();
