@@ -50,7 +50,7 @@ export class Live extends EventTarget {
     this.#watchSize();
     scene.addEventListener("open", () => this.#restart());
     scene.addEventListener("gone", () => this.#stop());
-    document.addEventListener("visibilitychange", () => (document.hidden ? this.#stop() : this.#start()));
+    document.addEventListener("visibilitychange", () => (document.hidden ? this.#stop() : this.#wake()));
     setInterval(() => this.#listenForSilence(), SILENCE_MS / 4);
   }
 
@@ -98,6 +98,12 @@ export class Live extends EventTarget {
     this.#heardAt = performance.now();
     if (this.#hasStreams) this.#showStream(turn);
     this.#listen(turn);
+  }
+
+  /** Others may have changed the scene meanwhile, and a new server counts revisions anew. */
+  #wake() {
+    if (this.#scene.id !== null) this.#scene.refresh();
+    this.#start();
   }
 
   #stop() {
@@ -171,9 +177,8 @@ export class Live extends EventTarget {
 
   #resume(lost) {
     if (lost) this.#tell("back");
-    this.#scene.refresh();
     this.#scene.resume();
-    this.#start();
+    this.#wake();
   }
 
   #giveUp(problem) {

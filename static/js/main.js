@@ -77,10 +77,7 @@ function tellOfConnection() {
   const { live, notices } = app;
   const [lost, refused] = ["The connection to the server is lost", "The picture could not be drawn"];
   live.addEventListener("lost", () => notices.hold(lost, "The picture is the last one that came. Trying again…"));
-  live.addEventListener("back", () => {
-    notices.clear(lost);
-    notices.say("The connection is back");
-  });
+  live.addEventListener("back", () => notices.say("The connection is back"));
   live.addEventListener("problem", ({ detail: { problem } }) => notices.show(problem, refused));
-  live.addEventListener("frame", () => notices.clear(refused));
+  live.addEventListener("frame", () => [lost, refused].forEach((title) => notices.clear(title)));
 }

@@ -6,7 +6,7 @@ import { button, element } from "./dom.js";
 const INTERVAL_MS = 250;
 
 /** Where it may be open from the start. */
-const ROOMY = "(min-width: 801px)";
+const ROOMY = "(min-width: 801px) and (min-height: 600px)";
 
 /** Colour of a pass in bars; names and numbers stand beside it. */
 export const passHue = (name) => `var(--pass-${name})`;

@@ -90,10 +90,13 @@ export class OpenScene extends EventTarget {
 
   async #read() {
     const { id } = this;
+    const revision = this.#revision;
     try {
       const { document, etag, summary } = await read(id);
-      if (id !== this.id) return;
+      // What came from before an edit of ours would undo it; the scene is read again when that has settled.
+      if (id !== this.id || this.#sending || this.#revision !== revision) return;
       const isNew = etag !== this.#etag;
+      if (summary?.revision < this.#revision) this.#documents.clear(); // a new server, which counts anew
       this.#revision = summary?.revision ?? this.#revision;
       this.summary = summary ?? this.summary;
       this.#take(document, etag);

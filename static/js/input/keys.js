@@ -52,7 +52,7 @@ function actionOf({ code, target }, view) {
 
 /** Whatever is on the picture lets keys through, as far as it needs none itself. */
 function isForView(target, view) {
-  const isAround = view.parentElement.contains(target) && !isText(target);
+  const isAround = view.closest("main").contains(target) && !isText(target);
   return isAround || target === document.body;
 }
 
