@@ -56,7 +56,7 @@ function castingLights({ document: { lights = {} } }) {
   return Object.entries(lights).filter(([, { shadow }]) => shadow && shadow.filter !== "none");
 }
 
-/** What `nextEffect` goes through: one at a time, the last is nothing. */
+/** What `nextEffect` goes through, one at a time: the scene's own chain, these, nothing. */
 const EFFECTS = [
   { name: "Tone map", post: [{ type: "tonemap", operator: "aces" }] },
   { name: "Blur", post: [{ type: "blur", radius: 4 }] },
@@ -70,6 +70,8 @@ const EFFECTS = [
 ];
 /** Scene → the chain that was there before it was switched off. */
 const formerChains = new Map();
+/** Scene → the last chain that was none of the effects. */
+const ownChains = new Map();
 
 export const isPostOn = ({ scene }) => scene.document.post.length > 0;
 
@@ -79,22 +81,25 @@ export function togglePost(app) {
   app.scene.edit({ post: isPostOn(app) ? [] : formerChains.get(id) ?? EFFECTS[0].post });
 }
 
-/** Which of the effects is on alone; -1 for none, or for a chain of the scene's own. */
-function effectIndex({ document }) {
-  return EFFECTS.findIndex(({ post }) => isChain(document.post, post));
-}
-
 /** Whether the chain is this one, apart from defaults that the server has filled in. */
 function isChain(chain, wanted) {
   return chain.length === wanted.length && wanted.every((effect, i) => same({ ...chain[i], ...effect }, chain[i]));
 }
 
+/** The effect that is on alone; `undefined` for none, or for a chain of the scene's own. */
+const effectOf = ({ document }) => EFFECTS.find(({ post }) => isChain(document.post, post));
+
 export function effectName(app) {
-  return EFFECTS[effectIndex(app.scene)]?.name ?? (isPostOn(app) ? "own" : "none");
+  return effectOf(app.scene)?.name ?? (isPostOn(app) ? "own" : "none");
 }
 
 export function nextEffect(app) {
-  app.scene.edit({ post: EFFECTS[effectIndex(app.scene) + 1]?.post ?? [] });
+  const { id, document } = app.scene;
+  if (isPostOn(app) && !effectOf(app.scene)) ownChains.set(id, document.post);
+  const own = ownChains.has(id) ? [ownChains.get(id)] : [];
+  const cycle = [...own, ...EFFECTS.map(({ post }) => post), []];
+  const place = cycle.findIndex((chain) => isChain(document.post, chain));
+  app.scene.edit({ post: cycle[(place + 1) % cycle.length] });
 }
 
 const lightsOf = ({ scene }, type) => Object.entries(scene.document.lights ?? {}).filter(([, light]) => light.type === type);

@@ -21,12 +21,15 @@ export function mountMarks(app, marks) {
   return gizmo;
 }
 
+/** The output that shows what lights see, not the camera. */
+const LIGHTS_VIEW = "shadow_map";
+
 /**
  * What the picture on screen shows: not the newest document, but that of its revision. `null` while nothing is
  * selected, or the selected instance is not in the picture yet.
  */
 function shownNow({ scene, live, camera, selection }) {
-  if (selection.name === null) return null;
+  if (selection.name === null || live.output === LIGHTS_VIEW) return null;
   const document = scene.documentAt(live.frame?.revision) ?? scene.document;
   const instance = document.instances?.[selection.name];
   const t = live.frame?.t ?? 0;
