@@ -98,7 +98,7 @@ pub enum Reason {
     Identity,
     /// A blur that reaches no other pixel.
     TooSmall,
-    /// The output shows data, not light.
+    /// The output shows data, which it does not change.
     Data(Output),
     /// The output shows what lights see.
     ViewsOfLights,
@@ -156,7 +156,7 @@ impl Display for Reason {
             Self::TooSmall => "its radius reaches no other pixel",
             Self::ViewsOfLights => "the picture shows what lights see",
             Self::BeforePost => "linear colour is taken before post",
-            Self::Data(output) => return write!(f, "output={} shows no light", output.word()),
+            Self::Data(output) => return write!(f, "output={} has no use for it", output.word()),
         };
         f.write_str(text)
     }

@@ -2,6 +2,7 @@
 
 use super::{Output, Part, Plan, ShadowPass};
 use crate::scene::Background;
+use std::collections::BTreeSet;
 
 /// One pass, by its name in `Server-Timing`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,12 +40,12 @@ impl Plan {
     }
 
     fn why_shadow(&self) -> Why {
-        let maps: usize = self.shadows.iter().map(|pass| pass.faces().len()).sum();
-        let casters: usize = self.shadows.iter().map(ShadowPass::casters).sum();
-        if maps > 0 {
-            let (maps, casters) = (counted(maps, "map"), counted(casters, "instance"));
+        if !self.shadows.is_empty() {
+            let maps = || self.shadows.iter().flat_map(ShadowPass::faces);
+            let casters: BTreeSet<u32> = maps().flat_map(|map| &map.casters).copied().collect();
             let lights = counted(self.shadows.len(), "light");
-            return Ok(format!("The shadow of {lights}: {casters} drawn into {maps} of depth."));
+            let (casters, maps) = (counted(casters.len(), "instance"), counted(maps().count(), "map"));
+            return Ok(format!("Shadows of {lights}: {casters} drawn into {maps} of depth."));
         }
         if self.lights.is_empty() {
             return Err("No light shines on anything that is drawn.".to_owned());

@@ -119,6 +119,9 @@ async fn it_says_which_lights_shine_and_how_their_shadows_are_drawn() {
         json!({ "filter": "pcf", "resolution": 128, "maps": maps, "casters": a_and_behind })
     );
     assert_eq!(plan["lights"].as_array().map(Vec::len), Some(2));
+    let maps = 1 + lamp["shadow"]["maps"].as_u64().expect("a number");
+    let expected = format!("Shadows of 2 lights: 2 instances drawn into {maps} maps of depth.");
+    assert_eq!(pass(&plan, "shadow")["reason"], expected);
 }
 
 #[tokio::test]
