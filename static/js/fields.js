@@ -14,7 +14,7 @@ let made = 0;
  *
  * @param {OpenScene} scene
  * @param {string} pointer JSON pointer of the value
- * @param {{label: string, unit?: string, hint?: string}} words for people; `hint` explains a term
+ * @param {{label?: string, unit?: string, hint?: string}} words for people; `hint` explains a term
  * @param {Control} control
  *
  * @typedef {object} Control what is between label and error
@@ -25,11 +25,11 @@ let made = 0;
  */
 export function field(scene, pointer, words, control) {
   const id = `field-${(made += 1)}`;
-  const label = labelOf(words, control, id);
+  const labels = words.label === undefined ? [] : [labelOf(words, control, id)];
   const error = element("p", { className: "error", id: `${id}-error`, role: "alert", hidden: true });
-  const box = element("div", { className: "field", "data-pointer": pointer }, label, control.element, error);
+  const box = element("div", { className: "field", "data-pointer": pointer }, ...labels, control.element, error);
   for (const input of control.inputs) describe(input, error.id, words.hint);
-  control.adopt?.(label);
+  for (const label of labels) control.adopt?.(label);
   fields.set(box, { scene, pointer, control, error });
   follow(scene, box, (document) => {
     if (error.hidden) control.show(valueAt(document, pointer), document);

@@ -99,7 +99,7 @@ export function removeField(scene, pointer, label) {
     setAt(scene, pointer, null);
     focusChosen(list);
   }, { className: "danger", "data-action": "remove" });
-  const made = field(scene, pointer, { label: "" }, { element: remove, inputs: [remove], show: () => {} });
+  const made = field(scene, pointer, {}, { element: remove, inputs: [remove], show: () => {} });
   made.classList.add("bare");
   return made;
 }

@@ -6,14 +6,16 @@ import { ask, getJson, scenePath, sendJson } from "../server.js";
 import { confirmed } from "./confirm.js";
 import { textField } from "./fields/text.js";
 import { galleryPart } from "./gallery.js";
-import { panel, row } from "./parts.js";
+import { arrange, panel, row } from "./parts.js";
 import { tried } from "./tried.js";
 
 /** List, create, the name of the open one, delete, and the gallery. */
 export function scenesPanel(app) {
   const { scene, notices } = app;
   const list = element("ul", { className: "entries", id: "scene-list", "aria-label": "Scenes" });
-  const refresh = () => tried(notices, "The scenes could not be listed", () => showScenes(app, list));
+  const rows = new Map();
+  const refresh = () => tried(notices, "The scenes could not be listed", async () =>
+    showScenes(app, list, rows, await getJson("/scenes")));
   const create = () => tried(notices, "The scene could not be created", () => createScene(app));
   const remove = () => tried(notices, "The scene could not be deleted", () => deleteScene(app, refresh));
   const made = panel("scenes", "Scenes",
@@ -28,18 +30,22 @@ export function scenesPanel(app) {
   return made;
 }
 
-async function showScenes(app, list) {
-  const scenes = await getJson("/scenes");
-  list.replaceChildren(...scenes.map((summary) => sceneRow(app, summary)));
+/** Rows that stay keep the focus. */
+function showScenes(app, list, rows, scenes) {
+  for (const { id } of scenes) if (!rows.has(id)) rows.set(id, sceneRow(app, id));
+  arrange(list, scenes.map(({ id }) => rows.get(id).item));
+  for (const { id, name } of scenes) rows.get(id).show(name, id === app.scene.id);
 }
 
-function sceneRow(app, { id, name }) {
-  const isOpen = id === app.scene.id;
-  const open = button(element("span", {}, name || "without a name"), () => openScene(app, id), {
-    className: "entry", "data-id": id, "aria-pressed": String(isOpen),
-  });
+function sceneRow(app, id) {
+  const words = element("span");
+  const open = button(words, () => openScene(app, id), { className: "entry", "data-id": id });
   open.append(element("code", {}, id));
-  return element("li", {}, open);
+  const show = (name, isOpen) => {
+    words.textContent = name || "without a name";
+    open.setAttribute("aria-pressed", String(isOpen));
+  };
+  return { item: element("li", {}, open), show };
 }
 
 async function createScene(app) {

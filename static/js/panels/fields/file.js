@@ -18,6 +18,7 @@ export function fileField(scene, pointer, words, write = (name) => setAt(scene, 
   const take = ([file]) => attempt(made, () => uploadFor(scene, file, write));
   const name = element("output", { className: "file-name" });
   const chooser = fileChooser("Choose…", words.accept, take);
+  chooser.setAttribute("aria-label", `${words.label}: choose a file`);
   const made = field(scene, pointer, words, {
     element: element("div", { className: "file" }, name, chooser),
     inputs: [chooser],
