@@ -3,7 +3,7 @@
 import { field } from "../../fields.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
-import { numberControl } from "./number.js";
+import { NumberControl } from "./number.js";
 import { hexFromLinear, linearFromHex, linearOf } from "./srgb.js";
 
 const STRENGTH = { step: 0.05, min: 0 };
@@ -24,7 +24,7 @@ function colorControl({ label, absent }, write) {
     type: "text", className: "hex", spellcheck: false, autocomplete: "off", placeholder: absent ?? "",
     title: "As on the web: #rrggbb or #rgb", "aria-label": `${label}, as #rrggbb`,
   });
-  const strength = numberControl(STRENGTH, (factor) => write(colorOf(swatch.value, factor)));
+  const strength = new NumberControl(STRENGTH, (factor) => write(colorOf(swatch.value, factor)));
   const times = element("label", { className: "times", title: "Brighter than a screen can show: times this" });
   times.append(element("span", {}, "×"), strength.element);
   strength.adopt(times.firstChild);
@@ -47,7 +47,7 @@ function colorControl({ label, absent }, write) {
     inputs: [text, swatch, strength.inputs[0]],
     show: (color) => {
       box.classList.toggle("absent", color === undefined);
-      showOnScreen(color, swatch, strength);
+      if (!isRefused(color)) showOnScreen(color, swatch, strength);
       if (!isTyping) text.value = textOf(color, swatch.value);
     },
   };
@@ -61,11 +61,12 @@ function showOnScreen(color, swatch, strength) {
   strength.show(color === undefined ? undefined : factor);
 }
 
-const isColor = (text) => linearFromHex(text) !== undefined;
+/** A text that is no colour; it stands in the document only until the server has answered. */
+const isRefused = (color) => typeof color === "string" && linearFromHex(color) === undefined;
 
 function textOf(color, hex) {
   if (color === undefined) return "";
-  return typeof color === "string" && !isColor(color) ? color : hex;
+  return isRefused(color) ? color : hex;
 }
 
 function factorOf(strength) {

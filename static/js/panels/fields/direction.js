@@ -7,6 +7,8 @@ import { setAt } from "../edit.js";
 import { whileDragging } from "./scrub.js";
 import { vectorControl } from "./vector.js";
 
+/** Arrow keys: to the right and up. */
+const TURNS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const RADIANS = Math.PI / 180;
 /** Of an arrow key; with Shift, of a fine step. */
 const STEP_DEG = 5;
@@ -20,56 +22,81 @@ const DECIMALS = 4;
  * move the light to the right in the picture.
  */
 export function directionField(scene, pointer, words, camera) {
-  return field(scene, pointer, words, directionControl(words, camera, (value) => setAt(scene, pointer, value)));
+  return field(scene, pointer, words, new DirectionControl(words, camera, (value) => setAt(scene, pointer, value)));
 }
 
-function directionControl(words, camera, write) {
-  let angles = { azimuth: 0, elevation: 90 };
-  const ball = ballElement(words.label);
-  const numbers = vectorControl({ ...words, step: 0.05 }, write);
-  const turn = (azimuth, elevation) => {
-    angles = turned(angles, azimuth, elevation);
-    write(travelOf(angles));
-  };
-  ball.addEventListener("pointerdown", (down) => startDrag(ball, down, angles, camera, (start, x, y) => {
-    angles = start;
-    turn(x, y);
-  }));
-  ball.addEventListener("keydown", (event) => {
-    const step = event.shiftKey ? FINE_STEP_DEG : STEP_DEG;
-    const [x, y] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
-    if (x === 0 && y === 0) return;
+class DirectionControl {
+  element;
+  inputs;
+
+  #camera;
+  #write;
+  #angles = { azimuth: 0, elevation: 90 };
+  #ball;
+  #numbers;
+
+  constructor(words, camera, write) {
+    this.#camera = camera;
+    this.#write = write;
+    this.#ball = ballElement(words.label);
+    this.#numbers = vectorControl({ ...words, step: 0.05 }, write);
+    this.element = element("div", { className: "direction" }, this.#ball, this.#numbers.element);
+    this.inputs = [this.#ball, ...this.#numbers.inputs];
+    this.#ball.addEventListener("pointerdown", (down) => this.#drag(down));
+    this.#ball.addEventListener("keydown", (event) => this.#take(event));
+    this.#repaintWithCamera();
+  }
+
+  show(travel) {
+    this.#numbers.show(travel);
+    if (travel) this.#angles = anglesOf(travel);
+    this.#paint();
+  }
+
+  #paint() {
+    paint(this.#ball, seenFrom(this.#camera, this.#angles));
+  }
+
+  #turn(from, right, up) {
+    this.#angles = turned(from, right, up);
+    this.#write(travelOf(this.#angles));
+  }
+
+  /** The half turn of the ball's front goes across its width; at the back, the light goes against the hand. */
+  #drag(down) {
+    down.preventDefault();
+    this.#ball.focus();
+    const start = this.#angles;
+    const degreesPerPixel = 180 / this.#ball.clientWidth;
+    const side = towardsLight(seenFrom(this.#camera, start))[2] < 0 ? -1 : 1;
+    whileDragging((event) => {
+      const right = (event.clientX - down.clientX) * degreesPerPixel * side;
+      this.#turn(start, right, (down.clientY - event.clientY) * degreesPerPixel);
+    });
+  }
+
+  #take(event) {
+    const turn = TURNS[event.key];
+    if (turn === undefined) return;
     event.preventDefault();
-    turn(x * step, y * step);
-  });
-  repaintWith(camera, ball, () => paint(ball, seenFrom(camera, angles)));
-  return {
-    element: element("div", { className: "direction" }, ball, numbers.element),
-    inputs: [ball, ...numbers.inputs],
-    show: (travel) => {
-      numbers.show(travel);
-      if (travel) angles = anglesOf(travel);
-      paint(ball, seenFrom(camera, angles));
-    },
-  };
+    const step = event.shiftKey ? FINE_STEP_DEG : STEP_DEG;
+    this.#turn(this.#angles, turn[0] * step, turn[1] * step);
+  }
+
+  /** For as long as the ball is on the page. */
+  #repaintWithCamera() {
+    const onChange = () => {
+      if (this.#ball.isConnected) this.#paint();
+      else this.#camera.removeEventListener("change", onChange);
+    };
+    this.#camera.addEventListener("change", onChange);
+  }
 }
 
 /** The light's angles for somebody who stands where the camera does. */
 function seenFrom({ current }, { azimuth, elevation }) {
   const [x, , z] = current ? sub(current.position, current.target) : [0, 0, 1];
   return { azimuth: azimuth - Math.atan2(x, z) / RADIANS, elevation };
-}
-
-/** The half turn of the ball's front goes across its width; at the back, the light goes against the hand. */
-function startDrag(ball, down, start, camera, move) {
-  down.preventDefault();
-  ball.focus();
-  const degreesPerPixel = 180 / ball.clientWidth;
-  const side = towardsLight(seenFrom(camera, start))[2] < 0 ? -1 : 1;
-  whileDragging((event) => {
-    const x = (event.clientX - down.clientX) * degreesPerPixel * side;
-    move(start, x, (down.clientY - event.clientY) * degreesPerPixel);
-  });
 }
 
 function turned({ azimuth, elevation }, right, up) {
@@ -108,16 +135,7 @@ function ballElement(label) {
   return ball;
 }
 
-/** Paints again when the camera has moved, for as long as the ball is on the page. */
-function repaintWith(camera, ball, repaint) {
-  const onChange = () => {
-    if (ball.isConnected) repaint();
-    else camera.removeEventListener("change", onChange);
-  };
-  camera.addEventListener("change", onChange);
-}
-
-/** The ball from the front: lit from where the light comes, which is a dot, hollow when it is behind. */
+/** Lit from where the light comes, which is a dot, hollow when it is behind. */
 function paint(ball, angles) {
   const [x, y, z] = towardsLight(angles);
   const dot = ball.querySelector("circle");

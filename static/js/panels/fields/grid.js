@@ -3,13 +3,13 @@
 import { field } from "../../fields.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
-import { numberControl } from "./number.js";
+import { NumberControl } from "./number.js";
 
 /** A field for an array of rows. `columns` names them for people who do not see the grid. */
 export function gridField(scene, pointer, words, rows, columns) {
   let grid = [];
   const cells = rows.map((row, y) => columns.map((column, x) => {
-    const cell = numberControl({ step: 0.05 }, (number) => {
+    const cell = new NumberControl({ step: 0.05 }, (number) => {
       grid = grid.with(y, grid[y].with(x, number));
       setAt(scene, pointer, grid);
     });

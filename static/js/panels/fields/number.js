@@ -18,64 +18,98 @@ const short = (number) => Number(number.toPrecision(DIGITS));
  *   an empty field removes it
  */
 export function numberField(scene, pointer, words) {
-  return field(scene, pointer, words, numberControl(words, (value) => setAt(scene, pointer, value)));
+  return field(scene, pointer, words, new NumberControl(words, (value) => setAt(scene, pointer, value)));
 }
 
-/** The control of {@link numberField}; `write` gets each new number, or `null`. */
-export function numberControl({ step = 0.1, min = -Infinity, max = Infinity, range, absent }, write) {
-  const input = element("input", { type: "number", step: "any", placeholder: absent ?? "" });
-  if (Number.isFinite(min)) input.min = min;
-  if (Number.isFinite(max)) input.max = max;
-  const slider = range && sliderOf(range, step);
-  let isTyping = false;
-  let last;
+/** The control of {@link numberField}. */
+export class NumberControl {
+  element;
+  inputs;
 
-  const show = (value) => {
-    last = value;
-    if (isTyping) return;
+  #input;
+  #slider;
+  #words;
+  #write;
+  #isTyping = false;
+  /** What was to be shown last, also while something is being typed. */
+  #last;
+
+  /** `write` gets each new number, or `null`. */
+  constructor({ step = 0.1, min = -Infinity, max = Infinity, range, absent }, write) {
+    this.#words = { step, min, max, absent };
+    this.#write = write;
+    this.#input = inputOf(this.#words);
+    this.#slider = range && element("input", { type: "range", min: range[0], max: range[1], step });
+    this.inputs = [this.#input];
+    this.element = range ? element("div", { className: "with-slider" }, this.#slider, this.#input) : this.#input;
+    this.#listen();
+  }
+
+  show(value) {
+    this.#last = value;
+    if (this.#isTyping) return;
     const text = value === undefined ? "" : String(short(value));
-    if (input.value !== text) input.value = text;
-    input.setCustomValidity("");
-    if (slider) slider.value = value ?? range[0];
-  };
-  const set = (value) => {
-    isTyping = false;
-    const inside = short(Math.min(Math.max(value, min), max));
-    show(inside);
-    write(inside);
-  };
-  const commit = () => {
-    if (!isTyping) return;
-    isTyping = false;
-    if (input.value !== "") return write(input.valueAsNumber);
-    if (absent !== undefined && !input.validity.badInput) return write(null);
-    input.setCustomValidity("This needs a number.");
-    input.reportValidity();
-  };
+    if (this.#input.value !== text) this.#input.value = text;
+    this.#input.setCustomValidity("");
+    if (this.#slider) this.#slider.value = value ?? this.#slider.min;
+  }
 
-  input.addEventListener("input", () => { isTyping = true; input.setCustomValidity(""); });
-  input.addEventListener("change", commit);
-  input.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") commit();
-    if (event.key === "Escape") {
-      isTyping = false;
-      show(last);
-    }
+  /** The label can be dragged, and names the slider as well. */
+  adopt(label) {
+    this.#slider?.setAttribute("aria-label", `${label.firstChild.textContent}, slider`);
+    scrubbable(label, () => this.#number, (start, pixels) => this.#set(start + pixels * this.#words.step));
+  }
+
+  get #number() {
+    return this.#input.valueAsNumber || 0;
+  }
+
+  #listen() {
+    this.#input.addEventListener("input", () => {
+      this.#isTyping = true;
+      this.#input.setCustomValidity("");
+    });
+    this.#input.addEventListener("change", () => this.#commit());
+    this.#input.addEventListener("keydown", (event) => this.#take(event));
+    this.#slider?.addEventListener("input", () => this.#set(this.#slider.valueAsNumber));
+  }
+
+  #take(event) {
+    if (event.key === "Enter") this.#commit();
+    if (event.key === "Escape") this.#cancel();
     const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (direction === undefined) return;
     event.preventDefault();
-    set((input.valueAsNumber || 0) + direction * step * (event.shiftKey ? 10 : 1));
-  });
-  slider?.addEventListener("input", () => set(slider.valueAsNumber));
+    this.#set(this.#number + direction * this.#words.step * (event.shiftKey ? 10 : 1));
+  }
 
-  const adopt = (label) => {
-    slider?.setAttribute("aria-label", `${label.firstChild.textContent}, slider`);
-    scrubbable(label, () => input.valueAsNumber || 0, (start, pixels) => set(start + pixels * step));
-  };
-  const box = slider ? element("div", { className: "with-slider" }, slider, input) : input;
-  return { element: box, inputs: [input], show, adopt };
+  #set(value) {
+    const inside = short(Math.min(Math.max(value, this.#words.min), this.#words.max));
+    this.#isTyping = false;
+    this.show(inside);
+    this.#write(inside);
+  }
+
+  /** What was typed goes to the server as it is: it knows best what is wrong with it. */
+  #commit() {
+    if (!this.#isTyping) return;
+    this.#isTyping = false;
+    const { value, valueAsNumber, validity } = this.#input;
+    if (value !== "") return this.#write(valueAsNumber);
+    if (this.#words.absent !== undefined && !validity.badInput) return this.#write(null);
+    this.#input.setCustomValidity("This needs a number.");
+    this.#input.reportValidity();
+  }
+
+  #cancel() {
+    this.#isTyping = false;
+    this.show(this.#last);
+  }
 }
 
-function sliderOf([low, high], step) {
-  return element("input", { type: "range", min: low, max: high, step });
+function inputOf({ min, max, absent = "" }) {
+  const input = element("input", { type: "number", step: "any", placeholder: absent });
+  if (Number.isFinite(min)) input.min = min;
+  if (Number.isFinite(max)) input.max = max;
+  return input;
 }

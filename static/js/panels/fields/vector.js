@@ -3,7 +3,7 @@
 import { field } from "../../fields.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
-import { numberControl } from "./number.js";
+import { NumberControl } from "./number.js";
 
 /**
  * A field for an array of numbers, by default x, y and z.
@@ -32,8 +32,8 @@ export function vectorControl({ axes = ["x", "y", "z"], ...words }, write) {
 }
 
 function axisControl(axis, words, write) {
-  const control = numberControl(words, write);
+  const control = new NumberControl(words, write);
   const label = element("label", {}, element("span", {}, axis), control.element);
   control.adopt(label.firstChild);
-  return { ...control, element: label };
+  return { element: label, inputs: control.inputs, show: (number) => control.show(number) };
 }
