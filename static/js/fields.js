@@ -7,7 +7,7 @@ import { follow } from "./panels/follow.js";
 
 /** The fields by their elements, `.field[data-pointer]`. */
 const fields = new WeakMap();
-let made = 0;
+let count = 0;
 
 /**
  * A field for the value at `pointer`.
@@ -24,7 +24,7 @@ let made = 0;
  * @property {(label: HTMLElement) => void} [adopt] takes the label into service, say for dragging
  */
 export function field(scene, pointer, words, control) {
-  const id = `field-${(made += 1)}`;
+  const id = `field-${(count += 1)}`;
   const labels = words.label === undefined ? [] : [labelOf(words, control, id)];
   const error = element("p", { className: "error", id: `${id}-error`, role: "alert", hidden: true });
   const box = element("div", { className: "field", "data-pointer": pointer }, ...labels, control.element, error);
