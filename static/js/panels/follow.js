@@ -12,6 +12,13 @@ export function follow(scene, element, update) {
   if (scene.document) update(scene.document);
 }
 
+/** `element`, which can be used once a scene is open: there is nothing to edit before. */
+export function onceOpen(scene, element) {
+  element.inert = scene.document === null;
+  scene.addEventListener("open", () => { element.inert = false; }, { once: true });
+  return element;
+}
+
 /**
  * An element whose content is built again when what `keyOf(document)` gives becomes another, and only then: fields
  * keep their focus through other changes. `refresh()` looks at the key out of turn.

@@ -4,6 +4,7 @@ import { byId } from "../dom.js";
 import { clearErrors, showErrors } from "../fields.js";
 import { Problem } from "../server.js";
 import { Chosen } from "./chosen.js";
+import { onceOpen } from "./follow.js";
 import { instancesPanel } from "./instances.js";
 import { lightsPanel } from "./lights.js";
 import { materialsPanel } from "./materials.js";
@@ -23,8 +24,7 @@ export function mountPanels(app) {
   const light = new Chosen(app.scene, "lights");
   const instances = instancesPanel(app);
   instances.open = true;
-  byId("panels").append(
-    scenesPanel(app),
+  const panelsOfScene = [
     stagesPanel(app),
     instances,
     materialsPanel(app),
@@ -35,7 +35,8 @@ export function mountPanels(app) {
     skyPanel(app),
     postPanel(app),
     renderPanel(app),
-  );
+  ];
+  byId("panels").append(scenesPanel(app), ...panelsOfScene.map((panel) => onceOpen(app.scene, panel)));
   tellOfRefusals(app);
 }
 

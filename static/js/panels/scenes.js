@@ -5,6 +5,7 @@ import { button, element } from "../dom.js";
 import { ask, getJson, scenePath, sendJson } from "../server.js";
 import { confirmed } from "./confirm.js";
 import { textField } from "./fields/text.js";
+import { onceOpen } from "./follow.js";
 import { galleryPart } from "./gallery.js";
 import { arrange, panel, row } from "./parts.js";
 import { tried } from "./tried.js";
@@ -21,8 +22,8 @@ export function scenesPanel(app) {
   const made = panel("scenes", "Scenes",
     list,
     row(button("New scene", create, { id: "new-scene" })),
-    textField(scene, "/name", { label: "Name of this scene" }),
-    row(button("Delete this scene…", remove, { id: "delete-scene", className: "danger" })),
+    onceOpen(scene, textField(scene, "/name", { label: "Name of this scene" })),
+    onceOpen(scene, row(button("Delete this scene…", remove, { id: "delete-scene", className: "danger" }))),
     galleryPart(app),
   );
   for (const type of ["open", "saved"]) scene.addEventListener(type, () => made.open && refresh());
