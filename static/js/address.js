@@ -1,6 +1,6 @@
 // Which scene the page's address names, and opening it.
 
-import { Problem, ask, scenePath } from "./server.js";
+import { Problem, ask, getJson, scenePath } from "./server.js";
 
 const HOME = "demo";
 const GALLERY = "gallery-";
@@ -28,10 +28,13 @@ export function showAddress(id) {
 
 /** Every piece of the gallery is one scene: who opens it first creates it, and changes to it stay. */
 async function createPiece(id) {
+  const scenes = await getJson("/scenes");
+  if (scenes.some((scene) => scene.id === id)) return;
   const query = new URLSearchParams({ from: id.slice(GALLERY.length) });
   try {
     await ask(`${scenePath(id)}?${query}`, { method: "PUT", headers: { "If-None-Match": "*" } });
   } catch (problem) {
+    // Somebody else may have been quicker.
     if (!(problem instanceof Problem) || problem.status !== 412) throw problem;
   }
 }

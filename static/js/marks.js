@@ -34,6 +34,8 @@ function shownNow({ scene, live, camera, selection }) {
   const instance = document.instances?.[selection.name];
   const t = live.frame?.t ?? 0;
   const shownCamera = camera.at(document, t);
-  if (!instance || !shownCamera) return null;
-  return { document, instance, t, camera: shownCamera, size: live.viewSize, revision: live.frame?.revision };
+  const size = live.viewSize;
+  const isSeen = size.width > 0 && size.height > 0; // a window can be too low for the view
+  if (!instance || !shownCamera || !isSeen) return null;
+  return { document, instance, t, camera: shownCamera, size, revision: live.frame?.revision };
 }
