@@ -25,7 +25,7 @@ async fn the_version_is_the_crates() {
 async fn the_page_and_its_parts_are_sent_once() {
     let client = Client::new();
     for (path, content_type) in
-        [("/", "text/html"), ("/page.css", "text/css"), ("/page.js", "text/javascript")]
+        [("/", "text/html"), ("/page.css", "text/css"), ("/js/main.js", "text/javascript")]
     {
         let part = client.get(path).await;
         assert_eq!(part.status, 200, "{path}");
