@@ -5,7 +5,7 @@ import { mkdtemp, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
-import { Server, chromium, onPage, until } from "./harness.mjs";
+import { Server, chromium, firefox, onPage, until } from "./harness.mjs";
 import { ROOM, Visit } from "./page.mjs";
 
 const PATIENT = { timeout: 300_000 };
@@ -392,6 +392,23 @@ test("the page comes back by itself when the server does", PATIENT, () => onPage
     await second.stop();
   }
 }));
+
+test("the page works in Firefox", PATIENT, async () => {
+  const other = await firefox();
+  try {
+    await onPage(other, "firefox", async (page) => {
+      await server.ask("PUT", "/scenes/firefox", ROOM);
+      const visit = await Visit.begin(page, server, "firefox");
+      const { camera } = await visit.document();
+      await visit.changes("a drag", () => visit.drag(visit.at(0.9, 0.1), visit.at(0.5, 0.3)));
+      await changed(visit, (document) => document.camera, camera);
+      await visit.changes("F1", () => page.keyboard.press("F1"));
+      assert.deepEqual(visit.complaints, []);
+    });
+  } finally {
+    await other.close();
+  }
+});
 
 visiting("the page works on a narrow screen and with a finger", async (visit) => {
   const { page } = visit;
