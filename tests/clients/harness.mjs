@@ -9,17 +9,19 @@ import { createInterface } from "node:readline";
 import puppeteer from "puppeteer-core";
 
 const ROOT = path.resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
-const PROGRAM = process.env.RASTERD_PROGRAM ?? path.join(ROOT, "target/debug/rasterd");
 const SCREENSHOTS = path.join(ROOT, "target/clients");
 
 /** Long enough for a busy machine; nothing here is slow by itself. */
 const PATIENCE_MS = 60_000;
 
-/** A server on a port of its own. */
+/** What cargo has built, unless the environment names another program. */
+const program = (profile) => process.env.RASTERD_PROGRAM ?? path.join(ROOT, "target", profile, "rasterd");
+
+/** A server, by default on a port of its own. */
 export class Server {
-  static async start(listen = "127.0.0.1:0", ...flags) {
+  static async start({ listen = "127.0.0.1:0", profile = "debug" } = {}) {
     const server = new Server();
-    server.process = spawn(PROGRAM, ["--listen", listen, ...flags], { stdio: ["ignore", "ignore", "pipe"] });
+    server.process = spawn(program(profile), ["--listen", listen], { stdio: ["ignore", "ignore", "pipe"] });
     server.address = await new Promise((resolve, reject) => {
       createInterface(server.process.stderr).on("line", (line) => {
         const address = /listening address=(\S+)/.exec(line);
@@ -98,13 +100,22 @@ export async function onPage(browser, name, test) {
   try {
     return await test(page);
   } catch (error) {
-    await mkdir(SCREENSHOTS, { recursive: true });
-    const file = path.join(SCREENSHOTS, `${name.replaceAll(/[^a-z0-9]+/gi, "-")}.png`);
-    await writeFile(file, await page.screenshot()).catch(() => {});
-    error.message += `\n(screenshot: ${path.relative(ROOT, file)})`;
+    error.message += `\n(${await keepScreenshot(page, name)})`;
     throw error;
   } finally {
     await page.close().catch(() => {});
+  }
+}
+
+/** Where the screenshot is, or why there is none: what the test has failed of matters more. */
+async function keepScreenshot(page, name) {
+  const file = path.join(SCREENSHOTS, `${name.replaceAll(/[^a-z0-9]+/gi, "-")}.png`);
+  try {
+    await mkdir(SCREENSHOTS, { recursive: true });
+    await writeFile(file, await page.screenshot());
+    return `screenshot: ${path.relative(ROOT, file)}`;
+  } catch (error) {
+    return `no screenshot: ${error.message}`;
   }
 }
 

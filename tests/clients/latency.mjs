@@ -1,5 +1,5 @@
-// How long after the mouse moves the picture on screen changes: `node tests/clients/latency.mjs [url]`, a release
-// build unless the URL of a running server is given.
+// How long after the mouse moves the picture on screen changes: `node tests/clients/latency.mjs [url]`, of the release
+// build (`cargo build --release`) unless the URL of a running server is given.
 //
 // Asked of the browser itself: a move's own time stamp, and the first animation frame in which the view's pixels
 // are others than before.
@@ -10,7 +10,7 @@ const MOVES = 60;
 const VIEW = { width: 1280, height: 720 };
 
 const [url] = process.argv.slice(2);
-const server = url ? null : await Server.start();
+const server = url ? null : await Server.start({ profile: "release" });
 const browser = await chromium();
 const page = await browser.newPage();
 // The drawer takes its part of the window.

@@ -43,6 +43,7 @@ export class Visit {
     await page.setViewport(window);
     await page.goto(`${server.url}/#${scene}`, { waitUntil: "domcontentloaded" });
     await visit.isShown();
+    await visit.streams();
     await page.$eval("#overlay", (overlay) => { overlay.open = false; });
     return visit;
   }
@@ -59,9 +60,24 @@ export class Visit {
     await until("a frame", () => this.page.$eval("#overlay > summary", ({ textContent }) => / fps /.test(textContent)));
   }
 
-  /** The part of the picture that nothing lies over, as a PNG. */
+  /** The picture is a stream's, not one of the stills that the page falls back to. */
+  async streams() {
+    await until("a stream on screen", () => this.page.$('#view img:not(.coming)[src*="/stream.mjpg"]'));
+  }
+
+  /** A part of the picture as a PNG, without what the page draws over it. */
   async looks() {
-    return Buffer.from(await this.page.screenshot({ clip: CLEAR, captureBeyondViewport: false })).toString("base64");
+    await this.#showOverlays(false);
+    const png = await this.page.screenshot({ clip: CLEAR, captureBeyondViewport: false });
+    await this.#showOverlays(true);
+    return Buffer.from(png).toString("base64");
+  }
+
+  /** Only their opacity changes: what is hidden would lose the focus. */
+  async #showOverlays(isShown) {
+    await this.page.$$eval("#marks, #window > :not(#view)", (overlays, opacity) => {
+      for (const { style } of overlays) Object.assign(style, { opacity, transition: "none" });
+    }, isShown ? "" : "0");
   }
 
   /** What it looks like when it has stopped changing. */

@@ -29,6 +29,7 @@ function visiting(name, look, room = ROOM) {
     await server.ask("PUT", `/scenes/${scene}`, room);
     const visit = await Visit.begin(page, server, scene);
     await look(visit);
+    await visit.streams();
     assert.deepEqual(visit.complaints, [], "nothing to complain about in the console");
   }));
 }
@@ -166,9 +167,9 @@ visiting("handles move, and the bar duplicates, hides and deletes what is select
   await page.waitForSelector("#gizmo .handle.y .hit");
   const before = (await visit.document()).instances.ball.translation;
   const arm = await page.$eval("#gizmo .handle.y .over", (path) => {
-    const [{ x, y }, { width }] = [path.getPointAtLength(path.getTotalLength() * 0.6), { width: 0 }];
+    const { x, y } = path.getPointAtLength(path.getTotalLength() * 0.6);
     const { x: left, y: top } = path.ownerSVGElement.getBoundingClientRect();
-    return [left + x + width, top + y];
+    return [left + x, top + y];
   });
   await visit.changes("a drag of the handle y", () => visit.drag(arm, [arm[0], arm[1] - 40]));
   const after = (await visit.document()).instances.ball.translation;
@@ -382,7 +383,7 @@ test("the page comes back by itself when the server does", PATIENT, () => onPage
   await first.stop();
   const says = (text) => page.waitForFunction((text) => document.querySelector("#notices").textContent.includes(text), {}, text);
   await says("connection to the server is lost");
-  const second = await Server.start(first.address);
+  const second = await Server.start({ listen: first.address });
   try {
     await second.ask("PUT", "/scenes/demo", ROOM);
     await until("the notice to go", () => page.$eval("#notices", ({ textContent }) => !textContent.includes("is lost")));
