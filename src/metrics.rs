@@ -48,7 +48,7 @@ pub struct Metrics {
     http_requests: IntCounterVec,
     /// Jobs whose client left, or whose time was over, before they were done.
     pub jobs_cancelled: IntCounter,
-    /// Who watches a stream now, as pictures or as events.
+    /// Who watches a stream now; who listens to its events alone is not counted.
     pub stream_watchers: IntGauge,
     /// Pictures given to watchers of streams, repeated ones too.
     pub stream_frames_sent: IntCounter,
@@ -90,7 +90,7 @@ impl Default for Metrics {
             jobs_rejected: counters("jobs_rejected_total", "Jobs that were not taken", &["reason"]),
             http_requests: counters("http_requests_total", "Requests answered", &["route", "status"]),
             jobs_cancelled: counter("jobs_cancelled_total", "Jobs ended before they were done"),
-            stream_watchers: gauge("stream_watchers", "Who watches a stream, or listens to its events"),
+            stream_watchers: gauge("stream_watchers", "Who watches a stream"),
             stream_frames_sent: counter("stream_frames_sent_total", "Pictures given to watchers"),
             stream_frames_dropped: counter(
                 "stream_frames_dropped_total",

@@ -8,7 +8,8 @@ use crate::scene::{Instance, Lens};
 use glam::{DMat4, DVec3, DVec4};
 use serde_json::{Map, Value, json};
 
-/// Describes the frame that `plan` draws, with the pictures of `outputs` beside it. `depth_range` is what 0 and 65535 stand for in a picture of depth.
+/// Describes the frame that `plan` draws, with the pictures of `outputs` beside it. `depth_range` is what 0 and
+/// 65535 stand for in a picture of depth.
 ///
 /// Matrices are lists of rows and multiply columns from the left. World space is right-handed with y up, a
 /// camera looks along −z of view space, and in clip space what can be seen has −w ≤ x, y ≤ w and

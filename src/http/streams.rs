@@ -56,7 +56,8 @@ pub(super) async fn watch(
     let (framing, request) = pairs.read(|query| (Framing::read(query), StreamRequest::read(query)))?;
     let framing = framing.unwrap_or(if names_images { Framing::Advance } else { Framing::Length });
 
-    let (watcher, first) = begin(&app, &id, request).await?;
+    let versions = app.store.watch(&id).ok_or_else(|| Problem::no_scene(&id))?;
+    let (watcher, first) = begin(&app, &id, app.streams.watch(versions, request)).await?;
     let mut before = None;
     let mut send = move |watcher: &Watcher, picture: &Picture| {
         watcher.count_sent(picture, before);
@@ -79,7 +80,7 @@ pub(super) async fn watch(
 #[utoipa::path(
     get, path = "/scenes/{id}/events", tag = "streams",
     params(("id" = String, Path, description = "The scene"), openapi::StreamQuery, openapi::FrameQuery),
-    responses((status = 200, description = "Events without end", content_type = "text/event-stream", body = String)),
+    responses((status = 200, description = "Events without end; the data of each `frame` has this shape, that of a `problem` the shape of errors", content_type = "text/event-stream", body = FrameEvent)),
 )]
 pub(super) async fn events(
     State(app): State<App>,
@@ -90,7 +91,8 @@ pub(super) async fn events(
 ) -> Result<Response, Problem> {
     accept::check(&headers, EVENT_STREAM)?;
     let request = pairs.read(StreamRequest::read)?;
-    let (watcher, first) = begin(&app, &id, request).await?;
+    let versions = app.store.watch(&id).ok_or_else(|| Problem::no_scene(&id))?;
+    let (watcher, first) = begin(&app, &id, app.streams.listen(versions, request)).await?;
     let opening = vec![frame_event(&watcher, &first)];
     let say = |watcher: &Watcher, news: News| match news {
         News { failure: Some(failure), .. } => vec![event("problem", &Problem::from(failure).to_json(None))],
@@ -137,10 +139,8 @@ impl Framing {
     }
 }
 
-/// A watcher of the scene `id` that has seen its first picture.
-async fn begin(app: &App, id: &str, request: StreamRequest) -> Result<(Watcher, Arc<Picture>), Problem> {
-    let versions = app.store.watch(id).ok_or_else(|| Problem::no_scene(id))?;
-    let mut watcher = app.streams.watch(versions, request);
+/// Waits for the first picture of a stream of the scene `id`.
+async fn begin(app: &App, id: &str, mut watcher: Watcher) -> Result<(Watcher, Arc<Picture>), Problem> {
     let deadline = app.settings.frame_seconds;
     let first = tokio::time::timeout(deadline, watcher.first()).await;
     match first.unwrap_or(Err(JobError::Deadline(deadline))) {
@@ -176,29 +176,57 @@ fn reply(content_type: &'static str, body: Body) -> Response {
     (headers, body).into_response()
 }
 
+/// What `event: frame` says of a picture.
+#[derive(Debug, serde::Serialize, utoipa::ToSchema)]
+pub(super) struct FrameEvent {
+    /// Counts from 1, as long as the stream is watched; also in the picture's comment
+    number: u64,
+    /// Of the scene
+    revision: u64,
+    /// Seconds: the `t` of a single frame that is the same picture
+    t: f64,
+    /// Pictures made in the last second
+    fps: usize,
+    /// Who sees the same pictures; listeners are not counted
+    watchers: usize,
+    /// Pixels in a row
+    width: u32,
+    /// Rows
+    height: u32,
+    /// Of the picture's file
+    bytes: usize,
+    /// By the names of `Server-Timing`
+    #[schema(value_type = BTreeMap<String, f64>)]
+    milliseconds: Map<String, Value>,
+    /// By the names of `Render-Stats`
+    #[schema(value_type = BTreeMap<String, u64>)]
+    counts: Map<String, Value>,
+}
+
+impl FrameEvent {
+    fn of(watcher: &Watcher, picture: &Picture) -> Self {
+        Self {
+            number: picture.number,
+            revision: picture.revision,
+            t: picture.t,
+            fps: watcher.fps(),
+            watchers: watcher.watchers(),
+            width: picture.size[0],
+            height: picture.size[1],
+            bytes: picture.jpeg.len(),
+            milliseconds: members(picture.timings.iter().map(|(pass, ms)| (*pass, (ms * 1e3).round() / 1e3))),
+            counts: members(picture.stats.iter().copied()),
+        }
+    }
+}
+
+/// An object whose members keep their order.
+fn members<T: Into<Value>>(entries: impl Iterator<Item = (&'static str, T)>) -> Map<String, Value> {
+    entries.map(|(name, value)| (name.to_owned(), value.into())).collect()
+}
+
 fn frame_event(watcher: &Watcher, picture: &Picture) -> Bytes {
-    let milliseconds: Map<String, Value> = picture
-        .timings
-        .iter()
-        .map(|(pass, ms)| ((*pass).to_owned(), json!((ms * 1e3).round() / 1e3)))
-        .collect();
-    let counts: Map<String, Value> =
-        picture.stats.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
-    event(
-        "frame",
-        &json!({
-            "number": picture.number,
-            "revision": picture.revision,
-            "t": picture.t,
-            "fps": watcher.fps(),
-            "watchers": watcher.watchers(),
-            "width": picture.size[0],
-            "height": picture.size[1],
-            "bytes": picture.jpeg.len(),
-            "milliseconds": milliseconds,
-            "counts": counts,
-        }),
-    )
+    event("frame", &json!(FrameEvent::of(watcher, picture)))
 }
 
 /// One event; JSON has no line breaks of its own.

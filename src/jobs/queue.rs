@@ -5,8 +5,8 @@
 //! series are under way as jobs may run.
 //!
 //! Streams draw for ever. Their frames line up among themselves first, and come in only as many at a time as
-//! leave a slot for others: however many streams there are, a single frame finds a place, and a turn after
-//! those before it.
+//! leave a slot for others, where there are two or more: however many streams there are, a single frame finds a
+//! place, and a turn after those before it.
 
 use super::JobError;
 use std::sync::Arc;

@@ -130,7 +130,7 @@ impl Plan {
     fn why_post(&self) -> Why {
         if !self.post.passes.is_empty() {
             let passes = counted(self.post.passes.len(), "effect");
-            return Ok(format!("{passes} look at the pixels around and need the whole picture."));
+            return Ok(format!("The whole picture is kept for what looks at the pixels around: {passes}."));
         }
         if !self.post.in_tiles.is_empty() {
             return Err(

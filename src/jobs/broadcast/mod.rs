@@ -49,12 +49,23 @@ struct Broadcast {
     incarnation: u64,
     request: StreamRequest,
     news: watch::Receiver<News>,
-    /// Changes under the lock of [`Shared::live`] alone.
+    /// All who keep it going. Changes under the lock of [`Shared::live`] alone.
+    users: AtomicUsize,
+    /// Those of them who see its pictures.
     watchers: AtomicUsize,
     /// When the pictures of the last second were made.
     pace: Mutex<VecDeque<Instant>>,
     /// Ends its task.
     over: CancellationToken,
+}
+
+/// What somebody wants of a stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    /// Its pictures.
+    Watches,
+    /// What is said of them.
+    Listens,
 }
 
 /// How a stream stands.
@@ -98,6 +109,19 @@ impl Streams {
     /// Outside of a tokio runtime.
     #[must_use]
     pub fn watch(&self, versions: watch::Receiver<Entry>, request: StreamRequest) -> Watcher {
+        self.join(versions, request, Role::Watches)
+    }
+
+    /// The same for who wants to know of the pictures and sees none of them.
+    ///
+    /// # Panics
+    /// Outside of a tokio runtime.
+    #[must_use]
+    pub fn listen(&self, versions: watch::Receiver<Entry>, request: StreamRequest) -> Watcher {
+        self.join(versions, request, Role::Listens)
+    }
+
+    fn join(&self, versions: watch::Receiver<Entry>, request: StreamRequest, role: Role) -> Watcher {
         let incarnation = versions.borrow().incarnation;
         let mut live = self.live();
         let joined = live.iter().find(|broadcast| broadcast.shows(incarnation, &request)).cloned();
@@ -106,10 +130,13 @@ impl Streams {
             live.push(Arc::clone(&broadcast));
             broadcast
         });
-        broadcast.watchers.fetch_add(1, Ordering::Relaxed);
+        broadcast.users.fetch_add(1, Ordering::Relaxed);
         drop(live);
-        self.0.renderer.metrics().stream_watchers.inc();
-        Watcher { news: broadcast.news.clone(), broadcast, streams: self.clone(), given: None }
+        if role == Role::Watches {
+            broadcast.watchers.fetch_add(1, Ordering::Relaxed);
+            self.0.renderer.metrics().stream_watchers.inc();
+        }
+        Watcher { news: broadcast.news.clone(), broadcast, streams: self.clone(), role, given: None }
     }
 
     /// Ends all streams, also those that begin from now on.
@@ -134,6 +161,7 @@ impl Streams {
             incarnation,
             request,
             news,
+            users: AtomicUsize::new(0),
             watchers: AtomicUsize::new(0),
             pace: Mutex::default(),
             over: self.0.closing.child_token(),
@@ -147,10 +175,13 @@ impl Streams {
         broadcast
     }
 
-    fn leave(&self, broadcast: &Arc<Broadcast>) {
-        self.0.renderer.metrics().stream_watchers.dec();
+    fn leave(&self, broadcast: &Arc<Broadcast>, role: Role) {
+        if role == Role::Watches {
+            broadcast.watchers.fetch_sub(1, Ordering::Relaxed);
+            self.0.renderer.metrics().stream_watchers.dec();
+        }
         let mut live = self.live();
-        if broadcast.watchers.fetch_sub(1, Ordering::Relaxed) == 1 {
+        if broadcast.users.fetch_sub(1, Ordering::Relaxed) == 1 {
             broadcast.over.cancel();
             live.retain(|other| !Arc::ptr_eq(other, broadcast));
         }
@@ -189,8 +220,9 @@ pub struct Watcher {
     news: watch::Receiver<News>,
     broadcast: Arc<Broadcast>,
     streams: Streams,
-    /// What it was given last, and when.
-    given: Option<(u64, Instant)>,
+    role: Role,
+    /// When it was given a picture last.
+    given: Option<Instant>,
 }
 
 impl Watcher {
@@ -204,7 +236,7 @@ impl Watcher {
         let news = self.news.wait_for(is_there).await.map_err(|_| JobError::Closing)?.clone();
         match news {
             News { picture: Some(picture), failure: None } => {
-                self.give(&picture);
+                self.note_given();
                 Ok(picture)
             }
             News { failure, .. } => Err(failure.unwrap_or(JobError::Closing)),
@@ -213,13 +245,13 @@ impl Watcher {
 
     /// What is new since the last call, or after a second what there is; `None` when the stream has ended.
     pub async fn next(&mut self) -> Option<News> {
-        let repeat = self.given.map_or_else(Instant::now, |(_, when)| when + REPEAT);
+        let repeat = self.given.map_or_else(Instant::now, |when| when + REPEAT);
         if let Ok(changed) = tokio::time::timeout_at(repeat.into(), self.news.changed()).await {
             changed.ok()?;
         }
         let news = self.news.borrow_and_update().clone();
-        if let Some(picture) = &news.picture {
-            self.give(picture);
+        if news.picture.is_some() {
+            self.note_given();
         }
         Some(news)
     }
@@ -241,7 +273,7 @@ impl Watcher {
             .inc_by(before.map_or(0, |before| (picture.number - before).saturating_sub(1)));
     }
 
-    /// How many watch the same, this one included.
+    /// How many see the same pictures; who listens is not among them.
     #[must_use]
     pub fn watchers(&self) -> usize {
         self.broadcast.watchers.load(Ordering::Relaxed)
@@ -253,13 +285,13 @@ impl Watcher {
         self.broadcast.pace().len()
     }
 
-    fn give(&mut self, picture: &Picture) {
-        self.given = Some((picture.number, Instant::now()));
+    fn note_given(&mut self) {
+        self.given = Some(Instant::now());
     }
 }
 
 impl Drop for Watcher {
     fn drop(&mut self) {
-        self.streams.leave(&self.broadcast);
+        self.streams.leave(&self.broadcast, self.role);
     }
 }
