@@ -3,12 +3,17 @@
 import { Picture } from "./picture.js";
 import { Problem, ask, scenePath } from "./server.js";
 
-/** Sharper than two device pixels nobody sees; more than this many nobody waits for. */
+/** Sharper than two device pixels nobody sees. */
 const MAX_PIXEL_RATIO = 2;
-const MAX_PIXELS = 2_000_000;
+/** For a picture sharper than the view's own pixels nobody waits longer than for this many, for any than for these. */
+const [MAX_SHARP_PIXELS, MAX_PIXELS] = [2_000_000, 8_000_000];
 const RESIZED_MS = 150;
-/** A stream that has shown nothing so long after its first event will not: some browsers have no streams. */
+/** A stream that has shown nothing so long after an event will not: some browsers have no streams. */
 const STREAM_PATIENCE_MS = 4000;
+/** So long there are stills before a stream is tried again; twice as long each time. */
+const FIRST_STILLS_MS = 15_000;
+/** No browser tells whenever a stream has ended: after this one takes the place of the other. */
+const RENEW_MS = 10_000;
 /** An unchanged frame comes once a second; after this the line is dead, or a frame takes far too long. */
 const SILENCE_MS = 15_000;
 /** What was shown last is remembered this often. */
@@ -37,7 +42,15 @@ export class Live extends EventTarget {
   #events = null;
   /** Grows with each start and stop, so that what belongs to an older one can tell. */
   #turn = 0;
-  #hasStreams = true;
+  /** Whether a stream is asked for, or stills are. */
+  #streams = true;
+  /** How many streams. */
+  #asked = 0;
+  /** Until then there are stills. */
+  #stillsUntil = -Infinity;
+  #stillsMs = FIRST_STILLS_MS;
+  /** The scene's revision that cannot be drawn, as long as nothing else is tried. */
+  #refused = null;
   #heardAt = 0;
   #keptAt = 0;
 
@@ -49,9 +62,10 @@ export class Live extends EventTarget {
     this.#measure();
     this.#watchSize();
     scene.addEventListener("open", () => this.#restart());
+    scene.addEventListener("saved", () => this.#tryChanged());
     scene.addEventListener("gone", () => this.#stop());
     document.addEventListener("visibilitychange", () => (document.hidden ? this.#stop() : this.#wake()));
-    setInterval(() => this.#listenForSilence(), SILENCE_MS / 4);
+    setInterval(() => this.#lookAfter(), SILENCE_MS / 4);
   }
 
   /** Which stage of the pipeline is shown: a word of the query's `output`. */
@@ -83,6 +97,8 @@ export class Live extends EventTarget {
 
   #restart() {
     this.frame = null;
+    this.#stillsUntil = -Infinity;
+    this.#stillsMs = FIRST_STILLS_MS;
     this.#start();
   }
 
@@ -96,8 +112,9 @@ export class Live extends EventTarget {
     if (document.hidden || this.#scene.id === null) return;
     const turn = this.#turn;
     this.#heardAt = performance.now();
-    if (this.#hasStreams) this.#showStream(turn);
+    this.#streams = this.#heardAt >= this.#stillsUntil;
     this.#listen(turn);
+    if (this.#streams) this.#showStream(turn);
   }
 
   /** Others may have changed the scene meanwhile, and a new server counts revisions anew. */
@@ -113,12 +130,27 @@ export class Live extends EventTarget {
 
   #stopListening() {
     this.#turn += 1;
+    this.#refused = null;
     this.#events?.close();
   }
 
+  /** Shows the stream, and a new one after a while, for as long as the turn lasts. */
   async #showStream(turn) {
-    const shows = await this.#picture.show(this.path("stream.mjpg"));
-    if (!shows && turn === this.#turn && this.#hasStreams) this.#recover();
+    let isWaiting = true;
+    const doubt = () => { if (isWaiting && turn === this.#turn) this.#doubtStreams(); };
+    this.#events.addEventListener("frame", () => setTimeout(doubt, STREAM_PATIENCE_MS), { once: true });
+    const shows = await this.#picture.show(this.#nextStream());
+    isWaiting = false;
+    if (turn !== this.#turn) return;
+    if (!shows) return this.#recover();
+    this.#stillsMs = FIRST_STILLS_MS;
+    setTimeout(() => { if (turn === this.#turn) this.#showStream(turn); }, RENEW_MS);
+  }
+
+  /** Chromium shows the stream that it has for an address, be it dead: each has another address than the one before. */
+  #nextStream() {
+    this.#asked += 1;
+    return this.path("stream.mjpg") + "&".repeat(this.#asked % 2);
   }
 
   #listen(turn) {
@@ -126,27 +158,32 @@ export class Live extends EventTarget {
     this.#events.addEventListener("frame", ({ data }) => this.#take(JSON.parse(data)));
     this.#events.addEventListener("problem", ({ data }) => this.#refuse(Problem.from(JSON.parse(data))));
     this.#events.addEventListener("error", () => { if (turn === this.#turn) this.#recover(); });
-    this.#events.addEventListener("frame", () => setTimeout(() => this.#doubtStreams(turn), STREAM_PATIENCE_MS), { once: true });
   }
 
   #take(frame) {
     this.frame = frame;
     this.#heardAt = performance.now();
     this.#keep();
-    if (!this.#hasStreams && !this.#picture.isWaiting) this.#picture.show(this.path("frame.jpg", { t: frame.t }));
+    if (!this.#streams) this.#showStill(frame);
     this.#scene.see(frame.revision);
     this.#tell("frame", frame);
+  }
+
+  #showStill({ t }) {
+    if (this.#heardAt >= this.#stillsUntil) this.#start();
+    else if (!this.#picture.isWaiting) this.#picture.show(this.path("frame.jpg", { t }));
   }
 
   #keep() {
     if (this.#heardAt - this.#keptAt < KEEP_MS) return;
     this.#keptAt = this.#heardAt;
-    this.#picture.keep();
+    if (this.#picture.isBroken) this.#recover();
+    else this.#picture.keep();
   }
 
-  #doubtStreams(turn) {
-    if (turn !== this.#turn || !this.#picture.isWaiting) return;
-    this.#hasStreams = false;
+  #doubtStreams() {
+    this.#stillsUntil = performance.now() + this.#stillsMs;
+    this.#stillsMs *= 2;
     this.#picture.stop();
     this.#start();
   }
@@ -162,13 +199,14 @@ export class Live extends EventTarget {
     let lost = false;
     for (let wait = FIRST_RETRY_MS; turn === this.#turn; wait = Math.min(wait * 2, LAST_RETRY_MS)) {
       await pause(wait);
+      const revision = this.#scene.summary?.revision;
       try {
         await this.#probe();
         if (turn === this.#turn) this.#resume(lost);
         return;
       } catch (problem) {
         if (turn !== this.#turn) return;
-        if (!problem.isPassing) return this.#giveUp(problem);
+        if (!problem.isPassing) return this.#giveUp(problem, revision);
         if (!lost) this.#tell("lost");
         lost = true;
       }
@@ -177,13 +215,18 @@ export class Live extends EventTarget {
 
   #resume(lost) {
     if (lost) this.#tell("back");
-    this.#scene.resume();
     this.#wake();
   }
 
-  #giveUp(problem) {
-    if (problem.status === 404) this.#scene.refresh();
-    else this.#refuse(problem);
+  #giveUp(problem, revision) {
+    if (problem.status === 404) return this.#scene.refresh();
+    this.#refused = revision;
+    this.#refuse(problem);
+  }
+
+  /** What could not be drawn may be drawn once it is another. */
+  #tryChanged() {
+    if (this.#refused !== null && this.#scene.summary?.revision !== this.#refused) this.#start();
   }
 
   /** Throws the `Problem` that keeps the server from showing this picture. */
@@ -193,7 +236,8 @@ export class Live extends EventTarget {
     body.cancel();
   }
 
-  #listenForSilence() {
+  #lookAfter() {
+    if (this.#refused !== null) this.#scene.refresh(); // no frame tells of changes
     const isListening = this.#events !== null && this.#events.readyState !== EventSource.CLOSED;
     if (isListening && performance.now() - this.#heardAt > SILENCE_MS) this.#recover();
   }
@@ -210,7 +254,8 @@ export class Live extends EventTarget {
   #measure() {
     const { width, height } = this.viewSize;
     const ratio = Math.min(devicePixelRatio || 1, MAX_PIXEL_RATIO);
-    const fit = Math.min(ratio, Math.sqrt(MAX_PIXELS / Math.max(width * height, 1)));
+    const [sharpest, largest] = [MAX_SHARP_PIXELS, MAX_PIXELS].map((most) => Math.sqrt(most / Math.max(width * height, 1)));
+    const fit = Math.min(ratio, Math.max(sharpest, 1), largest);
     const [w, h] = [width, height].map((side) => Math.max(16, Math.round(side * fit)));
     if (w === this.size.width && h === this.size.height) return false;
     this.size = { width: w, height: h };

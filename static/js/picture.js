@@ -20,6 +20,11 @@ export class Picture {
     return this.#coming !== null;
   }
 
+  /** Whether what is shown has lost its picture: a stream that broke off, as some browsers tell it. */
+  get isBroken() {
+    return this.#shown !== null && this.#shown.naturalWidth === 0;
+  }
+
   /** Shows what comes from `url`. The promise tells whether anything did; a later call makes it `false`. */
   show(url) {
     this.#drop(this.#coming);
