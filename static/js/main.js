@@ -74,10 +74,13 @@ function tellOfScene() {
 }
 
 function tellOfConnection() {
-  const { live, notices } = app;
+  const { live, scene, notices } = app;
   const [lost, refused] = ["The connection to the server is lost", "The picture could not be drawn"];
+  const unsent = "The last change is not sent yet";
   live.addEventListener("lost", () => notices.hold(lost, "The picture is the last one that came. Trying again…"));
   live.addEventListener("back", () => notices.say("The connection is back"));
   live.addEventListener("problem", ({ detail: { problem } }) => notices.show(problem, refused));
   live.addEventListener("frame", () => [lost, refused].forEach((title) => notices.clear(title)));
+  scene.addEventListener("unsent", () => notices.hold(unsent, "The server cannot take it now. Trying again…"));
+  for (const type of ["saved", "open", "gone"]) scene.addEventListener(type, () => notices.clear(unsent));
 }

@@ -1,12 +1,16 @@
 // The open scene: its document as the user wants it, and how the server comes to have the same.
 
-import { Problem, ask, getJson, scenePath, sendJson } from "./server.js";
+import { Problem, ask, getJson, jsonOf, scenePath, sendJson } from "./server.js";
 import { difference, merged } from "./merge.js";
 
 /** So long after the last edit the scene is read again: the server fills in the defaults of what is new. */
 const SETTLED_MS = 250;
+/** So long after the server could not take an edit it is asked again. */
+const RETRY_MS = 1000;
 /** Pictures lag behind the document by a few revisions; more are not asked for. */
 const REMEMBERED_REVISIONS = 64;
+
+const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /**
  * One scene at a time. Edits are visible at once in `document`; one PATCH at a time takes what has changed since
@@ -16,7 +20,8 @@ const REMEMBERED_REVISIONS = 64;
  * - `open`: another scene is open; `document` and `summary` are new.
  * - `change`: `document` has changed, by an edit or by somebody else; `detail.own` tells which.
  * - `saved`: the server has all edits; `summary` is new.
- * - `problem`: the server refused an edit, which is undone; `detail.problem`, `detail.patch`.
+ * - `unsent`: the server cannot take an edit now; it is sent again until `saved`.
+ * - `problem`: the server refused edits, which are undone; `detail.problem`, `detail.patch`.
  * - `gone`: the scene was deleted.
  */
 export class OpenScene extends EventTarget {
@@ -71,11 +76,6 @@ export class OpenScene extends EventTarget {
     await this.refresh();
   }
 
-  /** Sends what an earlier failure to reach the server left unsent. */
-  resume() {
-    this.#send();
-  }
-
   /** A frame shows this revision: if it is newer than ours, somebody else has changed the scene. */
   async see(revision) {
     if (revision <= this.#revision || this.#sending || this.#reading) return;
@@ -112,41 +112,48 @@ export class OpenScene extends EventTarget {
     if (this.#sending) return;
     const { id } = this;
     clearTimeout(this.#settling);
-    this.#sending = this.#sendAll(id).then((sent) => {
+    this.#sending = this.#sendAll(id).then(() => {
       this.#sending = null;
       if (id !== this.id) this.#send();
-      else if (sent) this.#settling = setTimeout(() => this.refresh(), SETTLED_MS);
+      else this.#settling = setTimeout(() => this.refresh(), SETTLED_MS);
     });
   }
 
-  /** Sends patch after patch until nothing is left. Answers whether the server took any. */
+  /** Sends patch after patch until the server has answered all edits. */
   async #sendAll(id) {
-    let sent = false;
-    try {
-      for (;;) {
-        const patch = difference(this.#confirmed, this.document);
-        if (patch === undefined || id !== this.id) return sent;
-        const summary = await this.#sendOne(id, patch);
-        if (id !== this.id) return sent;
-        sent = true;
-        this.#confirmed = merged(this.#confirmed, patch);
-        this.#revision = summary.revision;
-        this.summary = summary;
-        this.#remember();
+    for (;;) {
+      const patch = difference(this.#confirmed, this.document);
+      if (patch === undefined || id !== this.id) return;
+      try {
+        const summary = await sendJson("PATCH", scenePath(id), patch, { "Content-Type": "application/merge-patch+json" });
+        if (id === this.id) this.#confirm(patch, summary);
+      } catch (problem) {
+        if (!(problem instanceof Problem)) throw problem;
+        if (id !== this.id || problem.status === 404) return; // reading the scene tells that it is gone
+        if (problem.isPassing) await this.#waitToSend();
+        else this.#takeBack(patch, problem);
       }
-    } catch (problem) {
-      this.#fail(problem, id);
-      return sent;
     }
   }
 
-  async #sendOne(id, patch) {
-    try {
-      return await sendJson("PATCH", scenePath(id), patch, { "Content-Type": "application/merge-patch+json" });
-    } catch (problem) {
-      if (problem instanceof Problem && !problem.isPassing) problem.patch = patch;
-      throw problem;
-    }
+  #confirm(patch, summary) {
+    this.#confirmed = merged(this.#confirmed, patch);
+    this.#revision = summary.revision;
+    this.summary = summary;
+    this.#remember();
+  }
+
+  async #waitToSend() {
+    this.#tell("unsent");
+    await pause(RETRY_MS);
+  }
+
+  /** Undoes the edits of a refused patch and keeps those that came after it. */
+  #takeBack(patch, problem) {
+    const later = difference(merged(this.#confirmed, patch), this.document);
+    this.document = later === undefined ? this.#confirmed : merged(this.#confirmed, later);
+    this.#tell("change", { own: false });
+    this.#tell("problem", { problem, patch });
   }
 
   #remember() {
@@ -165,12 +172,8 @@ export class OpenScene extends EventTarget {
   #fail(problem, id) {
     if (!(problem instanceof Problem)) throw problem;
     if (id !== this.id || problem.isPassing) return;
-    if (problem.status === 404) return this.#tell("gone");
-    if (problem.patch) {
-      this.document = this.#confirmed;
-      this.#tell("change", { own: false });
-    }
-    this.#tell("problem", { problem, patch: problem.patch });
+    if (problem.status === 404) this.#tell("gone");
+    else this.#tell("problem", { problem });
   }
 
   #tell(type, detail) {
@@ -178,8 +181,10 @@ export class OpenScene extends EventTarget {
   }
 }
 
+/** The summary first: under a revision that is too old the next frame makes us read again, under a newer one nothing. */
 async function read(id) {
-  const [response, summaries] = await Promise.all([ask(scenePath(id)), getJson("/scenes")]);
-  const document = await response.json();
+  const summaries = await getJson("/scenes");
+  const response = await ask(scenePath(id));
+  const document = await jsonOf(response);
   return { document, etag: response.headers.get("ETag"), summary: summaries.find((entry) => entry.id === id) ?? null };
 }

@@ -46,13 +46,22 @@ export async function ask(path, options = {}) {
 
 /** The JSON of a resource. */
 export async function getJson(path, options) {
-  return (await ask(path, options)).json();
+  return jsonOf(await ask(path, options));
 }
 
 /** Sends JSON and answers the JSON that comes back. */
 export async function sendJson(method, path, value, headers = {}) {
   const options = { method, headers: { "Content-Type": "application/json", ...headers }, body: JSON.stringify(value) };
-  return (await ask(path, options)).json();
+  return jsonOf(await ask(path, options));
+}
+
+/** The JSON that an answer holds. */
+export async function jsonOf(response) {
+  try {
+    return await response.json();
+  } catch {
+    throw new Problem("The server's answer broke off.");
+  }
 }
 
 /** The path of a scene, or of something under it: `scenePath("a", "files", "b.png")`. */
