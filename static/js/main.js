@@ -30,7 +30,7 @@ new Pointer(app, view);
 new Wheel(app, view);
 takeKeys(app, view, help);
 mountToolbar(app, byId("toolbar"));
-mountDrawer(byId("panels"), byId("toggle-panels"));
+mountDrawer(byId("panels"), byId("toggle-panels"), byId("skip"));
 byId("open-help").addEventListener("click", help);
 mountSelected(app, mountMarks(app, byId("marks")), byId("selected"));
 mountOverlay(app, byId("overlay"), mountPlanPicture(app, byId("plan")));
