@@ -2,7 +2,7 @@
 
 import { getJson } from "./server.js";
 
-/** The server's answer for (x, y) in pixels of the view; `instance: null` for the background or without an answer. */
+/** The server's answer for (x, y) in pixels of the view; `instance: null` for the background. */
 export async function pick({ live, scene }, x, y) {
   const { viewSize, size, frame } = live;
   const query = new URLSearchParams({
@@ -11,8 +11,7 @@ export async function pick({ live, scene }, x, y) {
     y: pixel(y, viewSize.height, size.height),
     t: frame?.t ?? 0,
   });
-  const nothing = { instance: null, position: null };
-  return getJson(`${scene.path}/pick?${query}`).catch(() => nothing);
+  return getJson(`${scene.path}/pick?${query}`);
 }
 
 function pixel(at, viewSide, side) {

@@ -2,6 +2,7 @@
 
 import { panned, pointOnPlane, turned, zoomed } from "../camera.js";
 import { pick } from "../pick.js";
+import { tried } from "../tried.js";
 
 const TURN_DEG_PER_PX = 0.35;
 /** A pointer that moved less was a click. */
@@ -71,9 +72,10 @@ export class Pointer {
     const last = this.#lastClick;
     const isDouble = now - last.time < DOUBLE_CLICK_MS && Math.hypot(x - last.x, y - last.y) < 3 * CLICK_PX;
     this.#lastClick = { time: isDouble ? -Infinity : now, x, y };
-    const { instance, position } = await pick(this.#app, x, y);
-    if (!isDouble) this.#app.selection.select(instance);
-    else if (position) this.#app.motion.glide((camera) => ({ ...camera, target: position }));
+    const hit = await tried(this.#app.notices, "What is there cannot be told", () => pick(this.#app, x, y));
+    if (!hit) return;
+    if (!isDouble) this.#app.selection.select(hit.instance);
+    else if (hit.position) this.#app.motion.glide((camera) => ({ ...camera, target: hit.position }));
   }
 }
 

@@ -17,6 +17,7 @@ export class Wheel {
   #app;
   /** What the wheel turns towards, where and when. */
   #aim = { time: -Infinity, x: 0, y: 0, point: null };
+  #isAsking = false;
 
   constructor(app, view) {
     this.#app = app;
@@ -36,11 +37,20 @@ export class Wheel {
   }
 
   /** Until the server has said what is there, and for the background, the plane through the target has to do. */
-  async #aimAt(x, y) {
+  #aimAt(x, y) {
     const { camera, live } = this.#app;
-    const aim = { x, y, point: pointOnPlane(camera.current, x, y, live.viewSize) };
-    this.#aim = aim;
-    const { position } = await pick(this.#app, x, y);
-    if (position) aim.point = position;
+    this.#aim = { x, y, point: pointOnPlane(camera.current, x, y, live.viewSize) };
+    if (!this.#isAsking) this.#ask();
+  }
+
+  /** One question at a time; the next is about the newest aim. */
+  async #ask() {
+    this.#isAsking = true;
+    for (let asked = null; asked !== this.#aim;) {
+      asked = this.#aim;
+      const hit = await pick(this.#app, asked.x, asked.y).catch(() => null);
+      if (hit?.position) asked.point = hit.position;
+    }
+    this.#isAsking = false;
   }
 }

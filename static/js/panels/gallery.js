@@ -4,7 +4,7 @@ import { openScene } from "../address.js";
 import { button, element } from "../dom.js";
 import { getJson } from "../server.js";
 import { group } from "./parts.js";
-import { tried } from "./tried.js";
+import { tried } from "../tried.js";
 
 /** Pictures to open a scene by, each kept under an id of its own. */
 export function galleryPart(app) {

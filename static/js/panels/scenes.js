@@ -8,7 +8,7 @@ import { textField } from "./fields/text.js";
 import { onceOpen } from "./follow.js";
 import { galleryPart } from "./gallery.js";
 import { arrange, panel, row } from "./parts.js";
-import { tried } from "./tried.js";
+import { tried } from "../tried.js";
 
 /** List, create, the name of the open one, delete, and the gallery. */
 export function scenesPanel(app) {

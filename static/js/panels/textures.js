@@ -2,7 +2,7 @@
 
 import { button, element } from "../dom.js";
 import { panel, row } from "./parts.js";
-import { tried } from "./tried.js";
+import { tried } from "../tried.js";
 import { Chosen } from "./chosen.js";
 import { addEntry } from "./edit.js";
 import { entryEditor, entryList, removeField } from "./entries.js";
