@@ -29,13 +29,14 @@ export function takeKeys(app, view, help) {
   const { motion } = app;
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.key === "?" && !isText(event.target)) help();
+    if (event.key === "?" && !event.repeat && !isText(event.target)) help();
     if (!isForView(event.target, view)) return;
     const act = actionOf(event, view);
-    if (act) act(app);
-    else if (isHeldKey(event.code)) motion.press(event.code);
-    else return;
+    if (!act && !isHeldKey(event.code)) return;
     event.preventDefault();
+    if (event.repeat) return; // a held key acts once, or as long as it is held
+    if (act) act(app);
+    else motion.press(event.code);
   });
   document.addEventListener("keyup", (event) => motion.release(event.code));
   window.addEventListener("blur", () => motion.releaseAll());
