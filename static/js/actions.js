@@ -1,6 +1,7 @@
 // What buttons and keys do. Each takes the app; the state that a button shows is here too.
 
 import { same } from "./merge.js";
+import { translationOf } from "./transform.js";
 
 // ── The view ──
 
@@ -131,7 +132,7 @@ export function duplicateInstance(app, name) {
   const { instances } = app.scene.document;
   const copy = freeName(name, instances);
   const width = widthOf(app, name);
-  const [x, y, z] = instances[name].translation;
+  const [x, y, z] = translationOf(instances[name]);
   app.scene.edit({ instances: { [copy]: { ...instances[name], translation: [x + width, y, z] } } });
   app.selection.select(copy);
 }

@@ -2,9 +2,9 @@
 
 import { basis, pointOnPlane, project, rayAt, scaleAt } from "./camera.js";
 import { svg } from "./dom.js";
-import { axesOf, scaleOf, turnedFurther } from "./transform.js";
+import { axesOf, rotationOf, scaleOf, translationOf, turnedFurther } from "./transform.js";
 import { placeIn } from "./input/pointer.js";
-import { add, cross, degrees, dot, sub, times } from "./vec.js";
+import { AXES, add, cross, degrees, dot, rounding, sub, times } from "./vec.js";
 
 /** Length of a handle, in pixels of the view. */
 const REACH_PX = 84;
@@ -18,7 +18,8 @@ const FRONT_PART = 0.35;
 /** So many pixels double or halve the size. */
 const DOUBLE_PX = 120;
 const LEAST_FACTOR = 0.01;
-const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+/** Digits of a move, as a part of a handle's length: finer than a pixel. */
+const MOVE_DIGITS = 4;
 const NAMES = ["x", "y", "z"];
 
 export const MODES = { move: "Move", turn: "Turn", scale: "Scale" };
@@ -93,7 +94,7 @@ export class Gizmo extends EventTarget {
 /** What handles are drawn and dragged by; `null` if the instance's origin is behind the camera. */
 function placeOf({ document, instance, camera, size }) {
   const modelScale = document.render.model_scale;
-  const origin = times(instance.translation, modelScale);
+  const origin = times(translationOf(instance), modelScale);
   const centre = project(camera, origin, size);
   if (!centre) return null;
   const reach = REACH_PX / scaleAt(camera, centre.depth, size);
@@ -157,7 +158,8 @@ function dragMove(place, axis, from) {
   const along = (to) => times(AXES[axis], alongAxis(place, AXES[axis], to) - alongAxis(place, AXES[axis], from));
   const across = (to) => sub(pointOnPlane(camera, to.x, to.y, size, origin), pointOnPlane(camera, from.x, from.y, size, origin));
   const by = axis === 3 ? across : along;
-  return (to) => ({ translation: add(instance.translation, times(by(to), 1 / modelScale)).map(tidy(place)) });
+  const round = rounding(place.reach / modelScale, MOVE_DIGITS);
+  return (to) => ({ translation: add(translationOf(instance), times(by(to), 1 / modelScale)).map(round) });
 }
 
 /** By how far the pointer goes along the ring's tangent where it took hold. */
@@ -174,7 +176,7 @@ function dragTurn(place, axis, from) {
   const lengthSquared = Math.max(perRadian[0] ** 2 + perRadian[1] ** 2, LEAST_PX ** 2);
   return (to) => {
     const radians = ((to.x - from.x) * perRadian[0] + (to.y - from.y) * perRadian[1]) / lengthSquared;
-    return { rotation_deg: turnedFurther(instance.rotation_deg, axis, Number(degrees(radians).toFixed(1))) };
+    return { rotation_deg: turnedFurther(rotationOf(instance), axis, Number(degrees(radians).toFixed(1))) };
   };
 }
 
@@ -183,7 +185,7 @@ function dragScale(place, axis, from) {
   const tidied = (x) => Number(x.toPrecision(4));
   if (axis === 3) {
     const uniform = (to) => 2 ** ((to.x - from.x - (to.y - from.y)) / DOUBLE_PX);
-    const { scale } = instance;
+    const { scale = 1 } = instance;
     return (to) => ({ scale: Array.isArray(scale) ? scale.map((x) => tidied(x * uniform(to))) : tidied(scale * uniform(to)) });
   }
   const direction = axesOf(instance)[axis];
@@ -200,10 +202,4 @@ function alongAxis({ camera, size, origin }, axis, { x, y }) {
   const offset = sub(origin, ray.origin);
   const between = dot(axis, ray.direction);
   return (between * dot(ray.direction, offset) - dot(axis, offset)) / (1 - between * between);
-}
-
-/** Rounds lengths to what can be seen. */
-function tidy({ reach, modelScale }) {
-  const places = Math.min(Math.max(3 - Math.floor(Math.log10(reach / modelScale)), 0), 20);
-  return (x) => Number(x.toFixed(places));
 }

@@ -1,9 +1,10 @@
 // Where an instance stands: M = T · Rz · Ry · Rx · Spin · S, scaled about the world's origin by `model_scale`.
 
-import { add, degrees, dot, radians, rotated, times, unit } from "./vec.js";
+import { AXES, add, degrees, dot, radians, rotated, times, unit } from "./vec.js";
 
-const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-
+// As the server has them, until it has told so of a new instance.
+export const translationOf = ({ translation = [0, 0, 0] }) => translation;
+export const rotationOf = ({ rotation_deg = [0, 0, 0] }) => rotation_deg;
 export const scaleOf = ({ scale = 1 }) => (Array.isArray(scale) ? scale : [scale, scale, scale]);
 
 /** A vector turned by `rotation_deg`: about x, then y, then z. */
@@ -12,17 +13,18 @@ function turnedBy(v, rotationDeg) {
 }
 
 /** The instance's own axes in the world, without its spin. */
-export function axesOf({ rotation_deg = [0, 0, 0] }) {
-  return AXES.map((axis) => turnedBy(axis, rotation_deg));
+export function axesOf(instance) {
+  return AXES.map((axis) => turnedBy(axis, rotationOf(instance)));
 }
 
 /** The function that takes a point of the mesh to the world at time `t`. */
-export function worldFromMesh({ translation = [0, 0, 0], rotation_deg = [0, 0, 0], spin, ...instance }, modelScale, t) {
+export function worldFromMesh(instance, modelScale, t) {
+  const { spin } = instance;
   const scale = scaleOf(instance);
   const spun = spin ? (v) => rotated(v, unit(spin.axis), spin.deg_per_s * t) : (v) => v;
   return (point) => {
     const scaled = point.map((x, axis) => x * scale[axis]);
-    return times(add(turnedBy(spun(scaled), rotation_deg), translation), modelScale);
+    return times(add(turnedBy(spun(scaled), rotationOf(instance)), translationOf(instance)), modelScale);
   };
 }
 

@@ -10,6 +10,14 @@ export const mix = (a, b, part) => a.map((x, i) => x + (b[i] - x) * part);
 export const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 export const radians = (deg) => (deg * Math.PI) / 180;
 export const degrees = (rad) => (rad * 180) / Math.PI;
+/** The axes of the world. */
+export const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+
+/** Rounds coordinates of what is about `size` large to so many digits of that. */
+export function rounding(size, digits) {
+  const places = clamp(digits - 1 - Math.floor(Math.log10(size)), 0, 20);
+  return (x) => Number(x.toFixed(places));
+}
 
 /** `a` at length 1, or `fallback` if it has no direction. */
 export function unit(a, fallback = [0, 1, 0]) {

@@ -1,7 +1,7 @@
 // The open scene's camera as the page steers it.
 
 import { distanceOf, framed } from "./camera.js";
-import { add, rotated, sub, unit } from "./vec.js";
+import { add, rotated, rounding, sub, unit } from "./vec.js";
 import { same } from "./merge.js";
 
 /** Significant digits of what is written, as a part of the distance: finer than a pixel. */
@@ -86,7 +86,7 @@ export class Viewpoint extends EventTarget {
   #write() {
     const { position, target, orthographic } = this.#steered;
     const distance = distanceOf(this.#steered);
-    const round = rounding(distance);
+    const round = rounding(distance, DIGITS);
     const camera = { position: position.map(round), target: target.map(round), ...this.#planesAt(distance) };
     if (orthographic) camera.orthographic = { height: Number(orthographic.height.toPrecision(DIGITS)) };
     this.#written = { ...this.#scene.document.camera, ...camera };
@@ -108,10 +108,4 @@ function turnedByTime(camera, deg) {
   if (deg === 0) return camera;
   const offset = rotated(sub(camera.position, camera.target), unit(camera.up), deg);
   return { ...camera, position: add(camera.target, offset) };
-}
-
-/** Rounds coordinates of what lies about `distance` apart. */
-function rounding(distance) {
-  const places = Math.min(Math.max(DIGITS - 1 - Math.floor(Math.log10(distance)), 0), 20);
-  return (x) => Number(x.toFixed(places));
 }

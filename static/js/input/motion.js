@@ -1,13 +1,15 @@
 // All movement, frame by frame: drags, held keys, the wheel's rest, glides. What goes on together is one step.
 
 import { basis, distanceOf, flown, turned, zoomed } from "../camera.js";
-import { add, mix, times } from "../vec.js";
-import { turnedFurther } from "../transform.js";
+import { add, mix, rounding, times } from "../vec.js";
+import { rotationOf, translationOf, turnedFurther } from "../transform.js";
 
 /** Per second: the camera by a part of its distance, about its target, towards it. */
 const [FLY_PART, TURN_DEG, ZOOM_LOG] = [0.8, 90, 1.2];
 /** Per second: an instance by a part of the camera's distance, about the vertical. */
 const [MOVE_PART, SPIN_DEG] = [0.35, 90];
+/** Digits that are left of a part of that distance. */
+const MOVE_DIGITS = 6;
 /** The least that a key does, however short it is pressed. */
 const TAP_S = 0.03;
 /** After a pause, time is not made up for. */
@@ -81,21 +83,25 @@ export class Motion {
   }
 
   #run() {
+    if (!this.#running) this.#last = performance.now();
+    this.#schedule();
+  }
+
+  #schedule() {
     if (this.#running) return;
     this.#running = true;
-    this.#last = performance.now();
     requestAnimationFrame((now) => this.#tick(now));
   }
 
   #tick(now) {
     const seconds = Math.min(Math.max(now - this.#last, 0) / 1000, LONGEST_STEP_S);
     this.#last = now;
+    this.#running = false;
     const held = this.#takeHeld(seconds);
     const steps = [...this.#steps.splice(0), this.#wheelStep(seconds), ...this.#keySteps(held), this.#glideStep(now)].filter(Boolean);
     if (steps.length > 0) this.#app.camera.change((camera) => steps.reduce((moved, step) => step(moved), camera));
-    if (this.#app.selection.name !== null) this.#moveInstance(held);
-    this.#running = this.#held.size > 0 || this.#wheel !== null || this.#glide !== null;
-    if (this.#running) requestAnimationFrame((later) => this.#tick(later));
+    if (this.#app.selection.instance) this.#moveInstance(held);
+    if (this.#held.size > 0 || this.#wheel !== null || this.#glide !== null) this.#schedule();
   }
 
   /** The seconds that each key counts for in this frame. */
@@ -138,15 +144,15 @@ export class Motion {
   /** Along the axes of the world that lie next to the camera's, so that D goes right as one sees it. */
   #moveInstance(held) {
     const { camera: { current }, selection, scene } = this.#app;
-    const { translation, rotation_deg: rotation } = selection.instance;
+    const { instance } = selection;
     const steps = weighed(DIRECTIONS, held);
     const spin = summed(SPINS, held);
     if (steps && current) {
-      const distance = (MOVE_PART * distanceOf(current)) / scene.document.render.model_scale;
-      const by = worldAxes(current).map((axis, i) => times(axis, steps[i] * distance)).reduce(add);
-      selection.edit({ translation: add(translation, by).map((x) => Number(x.toFixed(5))) });
+      const distance = distanceOf(current) / scene.document.render.model_scale;
+      const by = worldAxes(current).map((axis, i) => times(axis, steps[i] * MOVE_PART * distance)).reduce(add);
+      selection.edit({ translation: add(translationOf(instance), by).map(rounding(distance, MOVE_DIGITS)) });
     }
-    if (spin) selection.edit({ rotation_deg: turnedFurther(rotation, 1, spin * SPIN_DEG) });
+    if (spin) selection.edit({ rotation_deg: turnedFurther(rotationOf(instance), 1, spin * SPIN_DEG) });
   }
 }
 

@@ -3,6 +3,7 @@
 import { distanceOf } from "../camera.js";
 import { element } from "../dom.js";
 import { field } from "../fields.js";
+import { degrees, radians } from "../vec.js";
 import { group, panel } from "./parts.js";
 import { choiceControl, choiceField } from "./fields/choice.js";
 import { numberField } from "./fields/number.js";
@@ -12,7 +13,6 @@ import { SHADINGS } from "./words.js";
 const SAMPLES = [1, 2, 4, 8, 16].map((samples) => [samples, String(samples)]);
 const CULLS = [["back", "Back faces"], ["front", "Front faces"], ["none", "None"]];
 const LENSES = [["perspective", "Perspective"], ["orthographic", "Orthographic"]];
-const RADIANS = Math.PI / 180;
 /** Until the server has told where its automatic framing puts the camera. */
 const UNKNOWN_DISTANCE = 5;
 
@@ -83,10 +83,10 @@ function lensField(scene, camera) {
 function lensPatch({ fov_y_deg: fov, orthographic }, current, lens) {
   const distance = current ? distanceOf(current) : UNKNOWN_DISTANCE;
   if (lens === "orthographic") {
-    const height = 2 * distance * Math.tan((fov / 2) * RADIANS);
+    const height = 2 * distance * Math.tan(radians(fov / 2));
     return { fov_y_deg: null, orthographic: { height: rounded(height) } };
   }
-  const angle = (2 * Math.atan(orthographic.height / 2 / distance)) / RADIANS;
+  const angle = degrees(2 * Math.atan(orthographic.height / 2 / distance));
   return { orthographic: null, fov_y_deg: rounded(angle) };
 }
 

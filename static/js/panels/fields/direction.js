@@ -1,7 +1,7 @@
 // Directions of light: a ball that shows how it falls, to be turned by dragging, and the numbers.
 
 import { field } from "../../fields.js";
-import { sub } from "../../vec.js";
+import { clamp, degrees, radians, sub } from "../../vec.js";
 import { element, svg } from "../../dom.js";
 import { setAt } from "../edit.js";
 import { whileDragging } from "./scrub.js";
@@ -9,7 +9,6 @@ import { vectorControl } from "./vector.js";
 
 /** Arrow keys: to the right and up. */
 const TURNS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-const RADIANS = Math.PI / 180;
 /** Of an arrow key; with Shift, of a fine step. */
 const STEP_DEG = 5;
 const FINE_STEP_DEG = 1;
@@ -96,19 +95,19 @@ class DirectionControl {
 /** The light's angles for somebody who stands where the camera does. */
 function seenFrom({ current }, { azimuth, elevation }) {
   const [x, , z] = current ? sub(current.position, current.target) : [0, 0, 1];
-  return { azimuth: azimuth - Math.atan2(x, z) / RADIANS, elevation };
+  return { azimuth: azimuth - degrees(Math.atan2(x, z)), elevation };
 }
 
 function turned({ azimuth, elevation }, right, up) {
   const turn = (((azimuth + right + 180) % 360) + 360) % 360 - 180;
-  return { azimuth: turn, elevation: Math.min(Math.max(elevation + up, -MAX_ELEVATION_DEG), MAX_ELEVATION_DEG) };
+  return { azimuth: turn, elevation: clamp(elevation + up, -MAX_ELEVATION_DEG, MAX_ELEVATION_DEG) };
 }
 
 /** From where light comes that travels along `travel`: azimuth 0° from +z, 90° from +x; elevation 90° from above. */
 function anglesOf([x, y, z]) {
   return {
-    azimuth: Math.atan2(-x, -z) / RADIANS,
-    elevation: Math.atan2(-y, Math.hypot(x, z)) / RADIANS,
+    azimuth: degrees(Math.atan2(-x, -z)),
+    elevation: degrees(Math.atan2(-y, Math.hypot(x, z))),
   };
 }
 
@@ -117,11 +116,11 @@ function travelOf(angles) {
 }
 
 function towardsLight({ azimuth, elevation }) {
-  const level = Math.cos(elevation * RADIANS);
+  const level = Math.cos(radians(elevation));
   return [
-    Math.sin(azimuth * RADIANS) * level,
-    Math.sin(elevation * RADIANS),
-    Math.cos(azimuth * RADIANS) * level,
+    Math.sin(radians(azimuth)) * level,
+    Math.sin(radians(elevation)),
+    Math.cos(radians(azimuth)) * level,
   ];
 }
 
@@ -150,8 +149,8 @@ function paint(ball, angles) {
 
 /** `12° above, 30° to the right, from behind`, as the camera sees it. */
 function describe(x, y, z) {
-  const degrees = (sine) => Math.round(Math.abs(Math.asin(sine)) / RADIANS);
-  const height = `${degrees(y)}° ${y < 0 ? "below" : "above"}`;
-  const side = `${degrees(x)}° to the ${x < 0 ? "left" : "right"}`;
+  const size = (sine) => Math.round(degrees(Math.abs(Math.asin(sine))));
+  const height = `${size(y)}° ${y < 0 ? "below" : "above"}`;
+  const side = `${size(x)}° to the ${x < 0 ? "left" : "right"}`;
   return `${height}, ${side}, ${z < 0 ? "behind what one sees" : "before what one sees"}`;
 }
