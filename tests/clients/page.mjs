@@ -124,6 +124,17 @@ export class Visit {
     }, `panel-${name}`);
   }
 
+  /** What the server says is at a place of the window. */
+  async pick([x, y]) {
+    const view = await this.page.$eval("#view", (view) => {
+      const { x, y } = view.getBoundingClientRect();
+      return { x, y, width: view.clientWidth, height: view.clientHeight };
+    });
+    const { width, height } = view;
+    const query = new URLSearchParams({ width, height, x: Math.floor(x - view.x), y: Math.floor(y - view.y) });
+    return this.server.json(`${this.path}/pick?${query}`);
+  }
+
   /** Where the window shows the middle of an instance's pixels, by the server's picture of ids. */
   async middleOf(instance) {
     const { id } = (await this.server.json(`${this.path}/instances`)).find(({ name }) => name === instance);
