@@ -2,7 +2,7 @@
 
 import { openScene } from "./address.js";
 import { freeName, frameInstance } from "./actions.js";
-import { Problem, ask, scenePath } from "./server.js";
+import { Problem, ask, getJson, scenePath } from "./server.js";
 
 /** What the server can read. */
 const KNOWN = ["obj", "mtl", "json", "png", "jpg", "jpeg", "webp", "bmp", "tga", "gif", "hdr"];
@@ -84,16 +84,24 @@ async function createScene(app, files) {
 async function addModels(app, files) {
   const models = files.filter((file) => extensionOf(file) === "obj");
   const others = files.filter((file) => extensionOf(file) !== "obj");
-  await Promise.all(others.map((file) => put(app, file)));
-  for (const file of models) await put(app, file);
+  await putAll(app, [...others, ...models]);
   if (models.length === 0) return app.notices.say(`${files.length === 1 ? files[0].name : `${files.length} files`}: now among the scene's files`);
   const names = models.map((file) => addInstance(app, file.name));
   await app.scene.settled();
   await showModel(app, names.at(-1));
 }
 
-async function put({ scene }, file) {
-  await ask(scenePath(scene.id, "files", file.name), { method: "PUT", body: file });
+/** Sends files one after another, and tells which took the place of others. */
+async function putAll({ scene: { id }, notices }, files) {
+  const there = await getJson(scenePath(id, "files"));
+  const taken = new Set(there.map(({ name }) => name));
+  const replaced = [];
+  for (const file of files) {
+    await ask(scenePath(id, "files", file.name), { method: "PUT", body: file });
+    if (taken.has(file.name)) replaced.push({ file: file.name, detail: "took the place of the scene's file of that name" });
+    taken.add(file.name);
+  }
+  notices.warn(replaced, "Replaced");
 }
 
 /** The instance's name. A model that is there already has only got a new file. */
