@@ -30,11 +30,11 @@ export class Outline {
 
   /** Draws the outline of what is selected in the picture; `shown: null` draws none. */
   draw(shown) {
-    const key = shown && JSON.stringify([this.#app.selection.name, shown.revision, shown.size, shown.camera, shown.instance]);
+    const bounds = shown && this.#app.instances.named(this.#app.selection.name)?.mesh_bounds;
+    const key = shown && JSON.stringify([this.#app.selection.name, bounds, shown.revision, shown.size, shown.camera, shown.instance]);
     if (key !== null && key === this.#outlined && !isMoving(shown)) return;
     clearTimeout(this.#timer);
     this.#outlined = key;
-    const bounds = shown && this.#app.instances.named(this.#app.selection.name)?.mesh_bounds;
     this.#show(bounds ? boxPath(shown, bounds) : "", "box");
     if (bounds && !isMoving(shown)) this.#timer = setTimeout(() => this.#refine(key), STILL_MS);
   }
