@@ -17,6 +17,7 @@ const SECTIONS = {
     ["Z X", "turn it about the vertical"],
     ["0 or Esc", "back to the camera"],
     ["Delete", "remove it"],
+    ["Ctrl Z, Ctrl Shift Z", "undo, redo what was changed; the camera stays"],
   ],
   "Switches": [
     ["F1", "shadows"],

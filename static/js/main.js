@@ -4,6 +4,7 @@ import { openAddressed, openScene, showAddress } from "./address.js";
 import { byId } from "./dom.js";
 import { mountDrawer } from "./drawer.js";
 import { takeDrops } from "./drop.js";
+import { History } from "./history.js";
 import { Instances } from "./instances.js";
 import { Live } from "./live.js";
 import { Notices } from "./notices.js";
@@ -48,6 +49,7 @@ function makeApp() {
   const plan = new Plan(scene, live);
   const camera = new Viewpoint(scene, live, plan);
   const app = { scene, live, plan, camera, selection: new Selection(scene), instances: new Instances(scene), notices: new Notices(byId("notices")) };
+  app.history = new History(scene);
   app.motion = new Motion(app);
   return app;
 }
@@ -63,6 +65,7 @@ function tellOfScene() {
   };
   scene.addEventListener("change", showName);
   scene.addEventListener("open", () => {
+    notices.clearAll();
     showName();
     showAddress(scene.id);
     notices.warn(scene.summary?.warnings ?? []);
@@ -78,7 +81,10 @@ function tellOfConnection() {
   const [lost, refused] = ["The connection to the server is lost", "The picture could not be drawn"];
   const unsent = "The last change is not sent yet";
   live.addEventListener("lost", () => notices.hold(lost, "The picture is the last one that came. Trying again…"));
-  live.addEventListener("back", () => notices.say("The connection is back"));
+  live.addEventListener("back", () => {
+    notices.clear(lost);
+    notices.say("The connection is back");
+  });
   live.addEventListener("problem", ({ detail: { problem } }) => notices.show(problem, refused));
   live.addEventListener("frame", () => [lost, refused].forEach((title) => notices.clear(title)));
   scene.addEventListener("unsent", () => notices.hold(unsent, "The server cannot take it now. Trying again…"));

@@ -44,6 +44,10 @@ export class Notices {
     this.#shown.delete(title);
   }
 
+  clearAll() {
+    for (const title of [...this.#shown.keys()]) this.clear(title);
+  }
+
   #put(title, kind, parts, actions = {}) {
     this.clear(title);
     const doing = Object.entries(actions).map(([label, act]) => button(label, () => { this.clear(title); act(); }));

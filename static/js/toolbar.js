@@ -25,7 +25,8 @@ export function mountToolbar(app, bar) {
   const switches = SWITCHES.map((entry) => makeSwitch(app, entry));
   const groups = [
     switches.map(({ made }) => made),
-    [button("Frame", () => actions.frameScene(app), { id: "frame-all", title: "Show the whole scene (F)" })],
+    historyButtons(app),
+    [button("Frame all", () => actions.frameScene(app), { id: "frame-all", title: "Show the whole scene (F)" })],
     [...fileButtons(app), saveMenu(app)],
   ];
   bar.append(...groups.map((buttons) => element("div", { className: "group" }, ...buttons)));
@@ -42,6 +43,18 @@ function makeSwitch(app, { key, label, act, isOn, isThere }) {
     if (isOn) made.setAttribute("aria-pressed", isOn(app));
   };
   return { made, update };
+}
+
+function historyButtons({ history }) {
+  const undo = button("↶", () => history.undo(), { id: "undo", title: "Undo (Ctrl+Z)", "aria-label": "Undo" });
+  const redo = button("↷", () => history.redo(), { id: "redo", title: "Redo (Ctrl+Shift+Z)", "aria-label": "Redo" });
+  const follow = () => {
+    undo.disabled = !history.canUndo;
+    redo.disabled = !history.canRedo;
+  };
+  history.addEventListener("change", follow);
+  follow();
+  return [undo, redo];
 }
 
 function fileButtons(app) {

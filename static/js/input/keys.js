@@ -38,9 +38,20 @@ export function takeKeys(app, view, help) {
     if (act) act(app);
     else motion.press(event.code);
   });
+  document.addEventListener("keydown", (event) => takeHistoryKey(app, event));
   document.addEventListener("keyup", (event) => motion.release(event.code));
   window.addEventListener("blur", () => motion.releaseAll());
   view.addEventListener("blur", () => motion.releaseAll());
+}
+
+/** Undo and redo, wherever the focus is but where text is typed. */
+function takeHistoryKey({ history }, event) {
+  const isCommand = (event.ctrlKey || event.metaKey) && !event.altKey;
+  const key = event.key.toLowerCase();
+  if (!isCommand || !["z", "y"].includes(key) || isTyped(event.target)) return;
+  event.preventDefault();
+  if (key === "y" || event.shiftKey) history.redo();
+  else history.undo();
 }
 
 /** What the key does at once; `undefined` if it does nothing, or as long as it is held. */
@@ -56,5 +67,8 @@ function isForView(target, view) {
   const isAround = view.closest("main").contains(target) && !isText(target);
   return isAround || target === document.body;
 }
+
+/** Where these keys take back what was typed. */
+const isTyped = (target) => isText(target) && !target.matches("select, [type=checkbox], [type=radio], [type=range], [type=color]");
 
 const isText = (target) => target.matches?.("input, textarea, select, [contenteditable]") ?? false;
