@@ -99,7 +99,8 @@ export class Live extends EventTarget {
     this.frame = null;
     this.#stillsUntil = -Infinity;
     this.#stillsMs = FIRST_STILLS_MS;
-    this.#start();
+    // What else follows the scene comes first: bars that grow take their part of the view.
+    queueMicrotask(() => (this.#measure() ? this.#requery() : this.#start()));
   }
 
   #requery() {

@@ -22,19 +22,23 @@ export function mountOverlay(app, overlay, openPlan) {
   overlay.open = matchMedia(ROOMY).matches;
   overlay.append(summary, facts, bar, legend, leftOut, button("Picture of the plan", openPlan, { id: "open-plan" }));
 
-  let told = 0;
+  let newest = null;
+  let timer = null;
   live.addEventListener("frame", ({ detail }) => {
-    const now = performance.now();
-    if (now - told < INTERVAL_MS) return;
-    told = now;
-    tellFrame(detail);
+    if (newest === null) tellFrame(detail); // the first at once
+    newest = detail;
+    timer ??= setTimeout(() => {
+      timer = null;
+      tellFrame(newest);
+    }, INTERVAL_MS);
   });
   plan.addEventListener("change", () => tellLeftOut(plan.current.left_out));
 
   function tellFrame(frame) {
     const passes = Object.entries(frame.milliseconds).filter(([name]) => name !== "queue");
     const total = passes.reduce((sum, [, ms]) => sum + ms, 0);
-    summary.replaceChildren(`${frame.fps} fps · ${total.toFixed(1)} ms`);
+    const pace = frame.fps > 0 ? `${frame.fps} fps` : "still";
+    summary.replaceChildren(`${pace} · ${total.toFixed(1)} ms`);
     facts.replaceChildren(...factsOf(frame, plan.current).flatMap(([term, value]) => [element("dt", {}, term), element("dd", {}, value)]));
     bar.setAttribute("aria-label", passes.map(([name, ms]) => `${name} ${ms.toFixed(1)} milliseconds`).join(", "));
     bar.replaceChildren(...passes.map(([name, ms]) => segment(name, ms / total)));

@@ -17,7 +17,7 @@ const page = await browser.newPage();
 await page.setViewport({ width: VIEW.width, height: VIEW.height + 200 });
 await page.goto(`${url ?? server.url}/#${process.env.SCENE ?? "demo"}`);
 await page.click("#toggle-panels");
-await page.waitForFunction(() => / fps /.test(document.querySelector("#overlay > summary").textContent));
+await page.waitForFunction(() => / ms$/.test(document.querySelector("#overlay > summary").textContent));
 const bar = await page.$eval("#view", (view) => view.getBoundingClientRect().top);
 await page.setViewport({ width: VIEW.width, height: VIEW.height + bar });
 await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 2000)));

@@ -57,7 +57,7 @@ export class Visit {
   }
 
   async isShown() {
-    await until("a frame", () => this.page.$eval("#overlay > summary", ({ textContent }) => / fps /.test(textContent)));
+    await until("a frame", () => this.page.$eval("#overlay > summary", ({ textContent }) => / ms$/.test(textContent)));
   }
 
   /** The picture is a stream's, not one of the stills that the page falls back to. */
