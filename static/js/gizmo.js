@@ -3,7 +3,7 @@
 import { basis, pointOnPlane, project, rayAt, scaleAt } from "./camera.js";
 import { svg } from "./dom.js";
 import { axesOf, rotationOf, scaleOf, translationOf, turnedFurther } from "./transform.js";
-import { placeIn } from "./input/pointer.js";
+import { DOUBLE_CLICK_MS, placeIn } from "./input/pointer.js";
 import { AXES, add, cross, degrees, dot, rounding, sub, times } from "./vec.js";
 
 /** Length of a handle, in pixels of the view. */
@@ -30,10 +30,12 @@ export class Gizmo extends EventTarget {
   #group = svg("g", { id: "gizmo" });
   #handles;
   #mode = "move";
+  #selectedAt = -Infinity;
 
   constructor(app, marks) {
     super();
     this.#app = app;
+    app.selection.addEventListener("change", () => { this.#selectedAt = performance.now(); });
     marks.append(this.#group);
     this.#handles = [...NAMES, "centre"].map((name, axis) => this.#makeHandle(name, axis));
   }
@@ -74,6 +76,8 @@ export class Gizmo extends EventTarget {
   #grab(event, handle, axis) {
     const { scene, camera, live, selection } = this.#app;
     if (event.button !== 0 || !camera.current) return;
+    // The click that selected brought the handles under the pointer: a second one is not meant for them.
+    if (performance.now() - this.#selectedAt < DOUBLE_CLICK_MS) return;
     event.preventDefault(); // The view would turn the camera.
     const marks = handle.ownerSVGElement;
     marks.parentNode.focus({ preventScroll: true });

@@ -218,3 +218,21 @@ visiting("the page works on a narrow screen and with a finger", async (visit) =>
   for (const finger of fingers) await finger.end();
   await until("a camera that is nearer", async () => distance((await visit.document()).camera) < 0.6 * distance(turned));
 });
+
+visiting("a double click looks at what was not selected before, whatever handles come up", async (visit) => {
+  const { page } = visit;
+  const { instances: { ball }, camera } = await visit.document();
+  const { box } = await visit.middleOf("ball");
+  const offset = await page.$eval("#view", (view) => { const { x, y } = view.getBoundingClientRect(); return { x, y }; });
+  // The middle of a ball is where its handles come up.
+  const middle = [offset.x + (box.left + box.right) / 2, offset.y + (box.top + box.bottom) / 2];
+  await page.mouse.click(...middle);
+  await page.waitForSelector("#gizmo .handle.centre:not([hidden])", { polling: 5 });
+  await page.mouse.click(...middle);
+  const { target } = await changed(visit, (document) => document.camera, camera);
+  await visit.stands();
+  const settled = (await visit.document()).camera.target;
+  const away = Math.hypot(...settled.map((value, axis) => value - ball.translation[axis]));
+  assert.ok(Math.abs(away - 0.5) < 0.02, `on the ball's surface: ${away} from its centre, ${target} on the way`);
+  assert.deepEqual((await visit.document()).instances.ball, ball, "no handle was dragged");
+});

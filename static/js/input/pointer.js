@@ -7,7 +7,7 @@ import { tried } from "../tried.js";
 const TURN_DEG_PER_PX = 0.35;
 /** A pointer that moved less was a click. */
 const CLICK_PX = 4;
-const DOUBLE_CLICK_MS = 350;
+export const DOUBLE_CLICK_MS = 350;
 
 /** Where an event lies in an element. */
 export function placeIn(element, { clientX, clientY }) {
