@@ -87,6 +87,7 @@ async function addModels(app, files) {
   await putAll(app, [...others, ...models]);
   if (models.length === 0) return app.notices.say(`${files.length === 1 ? files[0].name : `${files.length} files`}: now among the scene's files`);
   const names = models.map((file) => addInstance(app, file.name));
+  if (!app.scene.document.name) app.scene.edit({ name: names.at(-1) });
   await app.scene.settled();
   await showModel(app, names.at(-1));
 }

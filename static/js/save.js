@@ -1,6 +1,7 @@
 // Taking along what is on screen: the frame, the scene, the command that makes the same picture.
 
-import { ask } from "./server.js";
+import { ask, getJson, scenePath } from "./server.js";
+import { tried } from "./tried.js";
 import { element } from "./dom.js";
 
 /** The frame on screen as a lossless PNG. */
@@ -8,9 +9,20 @@ export async function saveFrame(app) {
   await download(app, framePath(app), `${app.scene.id}.png`);
 }
 
-/** The scene's document; its files stay on the server. */
+/** The scene's document, and the offer of its files: without them it cannot be opened again. */
 export async function saveScene(app) {
-  await download(app, app.scene.path, `${app.scene.id}.json`);
+  const { notices, scene: { id, path } } = app;
+  await download(app, path, `${id}.json`);
+  const files = await tried(notices, "The scene's files could not be listed", () => getJson(scenePath(id, "files")));
+  if (!files?.length) return;
+  const count = files.length === 1 ? "file" : `${files.length} files`;
+  notices.say(`${id}.json is saved without the scene's ${count}, which it needs to be opened again`, {
+    "Save them too": () => saveFiles(app, id, files),
+  });
+}
+
+async function saveFiles(app, id, files) {
+  for (const { name } of files) await download(app, scenePath(id, "files", name), name);
 }
 
 /** The command that fetches the same picture. */
