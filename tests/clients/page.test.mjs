@@ -88,6 +88,8 @@ test("the page comes back by itself when the server does", PATIENT, () => onPage
   try {
     await second.ask("PUT", "/scenes/demo", ROOM);
     await until("the notice to go", () => page.$eval("#notices", ({ textContent }) => !textContent.includes("is lost")));
+    // The message that all is well again lies over the picture for a while.
+    await until("no message", () => page.$eval("#notices", ({ textContent }) => textContent === ""));
     await visit.isShown();
     await visit.changes("a drag after the restart", () => visit.drag(visit.at(0.9, 0.1), visit.at(0.5, 0.3)));
   } finally {
