@@ -66,7 +66,10 @@ const EFFECTS = [
   { name: "Bloom", post: [{ type: "bloom", threshold: 0.7, intensity: 0.4 }] },
   { name: "Sharpen", post: [{ type: "sharpen", amount: 1 }] },
   { name: "FXAA", post: [{ type: "fxaa" }] },
-  { name: "Sepia", post: [{ type: "color_matrix", matrix: [[0.39, 0.77, 0.19, 0], [0.35, 0.69, 0.17, 0], [0.27, 0.53, 0.13, 0]] }] },
+  {
+    name: "Sepia",
+    post: [{ type: "color_matrix", matrix: [[0.39, 0.77, 0.19, 0], [0.35, 0.69, 0.17, 0], [0.27, 0.53, 0.13, 0]] }],
+  },
   { name: "Edges", post: [{ type: "kernel", kernel: [[-1, -1, -1], [-1, 8, -1], [-1, -1, -1]] }] },
 ];
 /** Scene → the chain that was there before it was switched off. */

@@ -9,6 +9,7 @@ const KNOWN = ["obj", "mtl", "json", "png", "jpg", "jpeg", "webp", "bmp", "tga",
 
 const extensionOf = ({ name }) => /\.([^.]+)$/.exec(name)?.[1].toLowerCase() ?? "";
 const stemOf = (name) => name.replace(/\.[^.]*$/, "");
+const named = (files) => (files.length === 1 ? files[0].name : `${files.length} files`);
 const isCarried = (event) => event.dataTransfer?.types.includes("Files");
 
 /** Takes files that are dropped anywhere, unless a field has taken them. */
@@ -52,7 +53,7 @@ export async function takeFiles(app, all) {
   const files = all.filter((file) => KNOWN.includes(extensionOf(file)));
   tellUnknown(app, all.filter((file) => !files.includes(file) && !file.name.startsWith(".")));
   if (files.length === 0) return;
-  const uploading = `Taking ${files.length === 1 ? files[0].name : `${files.length} files`}`;
+  const uploading = `Taking ${named(files)}`;
   app.notices.hold(uploading, "Sending…");
   try {
     if (files.some((file) => extensionOf(file) === "json")) await createScene(app, files);
@@ -85,7 +86,7 @@ async function addModels(app, files) {
   const models = files.filter((file) => extensionOf(file) === "obj");
   const others = files.filter((file) => extensionOf(file) !== "obj");
   await putAll(app, [...others, ...models]);
-  if (models.length === 0) return app.notices.say(`${files.length === 1 ? files[0].name : `${files.length} files`}: now among the scene's files`);
+  if (models.length === 0) return app.notices.say(`${named(files)}: now among the scene's files`);
   const names = models.map((file) => addInstance(app, file.name));
   if (!app.scene.document.name) app.scene.edit({ name: names.at(-1) });
   await app.scene.settled();

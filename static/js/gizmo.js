@@ -138,7 +138,8 @@ function ringPath({ camera, size, origin, reach }, axis) {
   const isFront = (point) => dot(sub(point, origin), forward) <= FRONT_PART * reach;
   // From the first point that comes to the front, so that the half is one piece.
   const first = Math.max(points.findIndex((point, i) => isFront(point) && !isFront(points.at(i - 1))), 0);
-  const ordered = [...points.slice(first), ...points.slice(0, first)].filter(isFront).map((point) => project(camera, point, size)).filter(Boolean);
+  const front = [...points.slice(first), ...points.slice(0, first)].filter(isFront);
+  const ordered = front.map((point) => project(camera, point, size)).filter(Boolean);
   if (ordered.length < 2) return { d: "", end: { x: 0, y: 0 } };
   const closes = ordered.length === RING_POINTS ? "Z" : "";
   const end = ordered[Math.floor(ordered.length * (axis + 1) / 4)];

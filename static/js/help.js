@@ -34,7 +34,8 @@ export function mountHelp(dialog) {
   const title = element("h2", { id: "help-title" }, "Keys and gestures");
   const note = element("p", {}, "Keys work while the picture has the focus: click it, or reach it with Tab. This list: ?");
   const sections = Object.entries(SECTIONS).map(([heading, rows]) => section(heading, rows));
-  dialog.append(title, note, element("div", { className: "sections" }, ...sections), button("Close", () => dialog.close(), { className: "close" }));
+  const close = button("Close", () => dialog.close(), { className: "close" });
+  dialog.append(title, note, element("div", { className: "sections" }, ...sections), close);
   return () => { if (!dialog.open) dialog.showModal(); };
 }
 

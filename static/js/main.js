@@ -21,7 +21,7 @@ import { Wheel } from "./input/wheel.js";
 import { mountHelp } from "./help.js";
 import { mountMarks } from "./marks.js";
 import { mountPanels } from "./panels/index.js";
-import { mountSelected } from "./selected.js";
+import { mountSelectionBar } from "./selection-bar.js";
 import { mountToolbar } from "./toolbar.js";
 
 const view = byId("view");
@@ -33,7 +33,7 @@ takeKeys(app, view, help);
 mountToolbar(app, byId("toolbar"));
 mountDrawer(byId("panels"), byId("toggle-panels"), byId("skip"));
 byId("open-help").addEventListener("click", help);
-mountSelected(app, mountMarks(app, byId("marks")), byId("selected"));
+mountSelectionBar(app, mountMarks(app, byId("marks")), byId("selected"));
 mountOverlay(app, byId("overlay"), mountPlanPicture(app, byId("plan")));
 takeDrops(app, byId("drop-hint"));
 tellOfScene();
@@ -48,8 +48,13 @@ function makeApp() {
   const live = new Live(scene, view);
   const plan = new Plan(scene, live);
   const camera = new Viewpoint(scene, live, plan);
-  const app = { scene, live, plan, camera, selection: new Selection(scene), instances: new Instances(scene), notices: new Notices(byId("notices")) };
-  app.history = new History(scene);
+  const app = {
+    scene, live, plan, camera,
+    selection: new Selection(scene),
+    instances: new Instances(scene),
+    history: new History(scene),
+    notices: new Notices(byId("notices")),
+  };
   app.motion = new Motion(app);
   return app;
 }

@@ -52,7 +52,8 @@ export class Notices {
     this.clear(title);
     const doing = Object.entries(actions).map(([label, act]) => button(label, () => { this.clear(title); act(); }));
     const close = button("×", () => this.clear(title), { className: "close", "aria-label": `Dismiss: ${title}` });
-    const notice = element("div", { className: "notice", "data-kind": kind }, element("h2", {}, title), ...parts, ...doing, close);
+    const heading = element("h2", {}, title);
+    const notice = element("div", { className: "notice", "data-kind": kind }, heading, ...parts, ...doing, close);
     this.#shown.set(title, notice);
     this.#list.append(notice);
     return notice;

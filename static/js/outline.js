@@ -10,7 +10,8 @@ import { corners } from "./vec.js";
 const STILL_MS = 200;
 
 /** Pairs of a box's corners that differ in one bit: its edges. */
-const EDGES = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((from) => [1, 2, 4].filter((bit) => !(from & bit)).map((bit) => [from, from | bit]));
+const EDGES = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((from) =>
+  [1, 2, 4].filter((bit) => !(from & bit)).map((bit) => [from, from | bit]));
 
 export class Outline {
   #app;
@@ -31,7 +32,8 @@ export class Outline {
   /** Draws the outline of what is selected in the picture; `shown: null` draws none. */
   draw(shown) {
     const bounds = shown && this.#app.instances.named(this.#app.selection.name)?.mesh_bounds;
-    const key = shown && JSON.stringify([this.#app.selection.name, bounds, shown.revision, shown.size, shown.camera, shown.instance]);
+    const { selection: { name } } = this.#app;
+    const key = shown && JSON.stringify([name, bounds, shown.revision, shown.size, shown.camera, shown.instance]);
     if (key !== null && key === this.#outlined && !isMoving(shown)) return;
     clearTimeout(this.#timer);
     this.#outlined = key;

@@ -39,7 +39,8 @@ export function mountOverlay(app, overlay, openPlan) {
     const total = passes.reduce((sum, [, ms]) => sum + ms, 0);
     const pace = frame.fps > 0 ? `${frame.fps} fps` : "still";
     summary.replaceChildren(`${pace} · ${total.toFixed(1)} ms`);
-    facts.replaceChildren(...factsOf(frame, plan.current).flatMap(([term, value]) => [element("dt", {}, term), element("dd", {}, value)]));
+    const rows = factsOf(frame, plan.current);
+    facts.replaceChildren(...rows.flatMap(([term, value]) => [element("dt", {}, term), element("dd", {}, value)]));
     bar.setAttribute("aria-label", passes.map(([name, ms]) => `${name} ${ms.toFixed(1)} milliseconds`).join(", "));
     bar.replaceChildren(...passes.map(([name, ms]) => segment(name, ms / total)));
     legend.replaceChildren(...passes.map(([name, ms]) => legendItem(name, ms)));

@@ -14,7 +14,8 @@ const COLUMNS = { sources: 10, passes: 330, reasons: 540 };
 /** Fills the dialog; answers what opens it. */
 export function mountPlanPicture(app, dialog) {
   const body = element("div", { className: "plan-body" });
-  dialog.append(element("h2", { id: "plan-title" }, "What a frame runs, and what it leaves out"), body, button("Close", () => dialog.close(), { className: "close" }));
+  const title = element("h2", { id: "plan-title" }, "What a frame runs, and what it leaves out");
+  dialog.append(title, body, button("Close", () => dialog.close(), { className: "close" }));
   const draw = () => { if (dialog.open) body.replaceChildren(...contentOf(app.plan.current, app.live.frame)); };
   app.plan.addEventListener("change", draw);
   return () => {
@@ -32,12 +33,19 @@ function contentOf(plan, frame) {
 }
 
 function picture(plan, frame) {
-  const sources = [...sourceBoxes("Lights", plan.lights, lightText, "shadow"), ...sourceBoxes("Draws", plan.draws, drawText, "geometry"), ...sourceBoxes("Effects", plan.post, effectText, "post")];
+  const sources = [
+    ...sourceBoxes("Lights", plan.lights, lightText, "shadow"),
+    ...sourceBoxes("Draws", plan.draws, drawText, "geometry"),
+    ...sourceBoxes("Effects", plan.post, effectText, "post"),
+  ];
   const passesHeight = plan.passes.length * (BOX_HEIGHT + GAP);
   const sourcesHeight = sources.reduce((sum, { height }) => sum + height + GAP, 0);
   const height = Math.max(passesHeight, sourcesHeight) + GAP;
-  const made = svg("svg", { viewBox: `0 0 ${WIDTH} ${height}`, class: "plan", role: "img", "aria-label": "The passes in order, with what feeds them" });
+  const made = svg("svg", {
+    viewBox: `0 0 ${WIDTH} ${height}`, class: "plan", role: "img", "aria-label": "The passes in order, with what feeds them",
+  });
   const tops = new Map(plan.passes.map(({ name }, i) => [name, GAP + i * (BOX_HEIGHT + GAP)]));
+  made.append(...[...tops.values()].slice(1).map(connector));
   made.append(...plan.passes.flatMap((pass) => passBox(pass, tops.get(pass.name), frame)));
   let top = GAP;
   for (const source of sources) {
@@ -45,6 +53,11 @@ function picture(plan, frame) {
     top += source.height + GAP;
   }
   return made;
+}
+
+/** From one pass down to the next, whose box begins at `top`. */
+function connector(top) {
+  return svg("path", { d: `M${COLUMNS.passes + BOX_WIDTH / 2} ${top - GAP}v${GAP}`, class: "flow" });
 }
 
 /** A pass: name and time, and beside it why it runs or not. */
@@ -56,13 +69,19 @@ function passBox({ name, runs, reason }, top, frame) {
   const box = svg("rect", { x, y: top, width: BOX_WIDTH, height: BOX_HEIGHT, rx: 8, class: runs ? "pass" : "pass skipped" });
   box.style.setProperty("--hue", passHue(name));
   return [
-    svg("path", { d: `M${x + BOX_WIDTH / 2} ${top + BOX_HEIGHT}v${GAP}`, class: "flow" }),
     box,
     svg("text", { x: x + 12, y: middle, class: "name" }, name),
     svg("text", { x: x + BOX_WIDTH - 12, y: middle, class: "time" }, time),
-    ...wrapped(reason, 46).map((line, i, lines) => svg("text", { x: COLUMNS.reasons, y: middle + (i - (lines.length - 1) / 2) * LINE, class: "reason" }, line)),
+    ...wrapped(reason, 46).map((line, i, lines) => {
+      const y = middle + (i - (lines.length - 1) / 2) * LINE;
+      return svg("text", { x: COLUMNS.reasons, y, class: "reason" }, line);
+    }),
   ];
 }
+
+/** A curve that leaves and arrives level, with a head. */
+const arrow = ([fromX, fromY], [toX, toY]) =>
+  `M${fromX} ${fromY}C${fromX + 30} ${fromY} ${toX - 23} ${toY} ${toX} ${toY}m-7 -5l7 5l-7 5`;
 
 /** A box that lists lights or draws, with an arrow to the pass they feed. */
 function sourceBoxes(title, entries, textOf, feeds) {
@@ -78,15 +97,17 @@ function sourceBoxes(title, entries, textOf, feeds) {
       svg("rect", { x, y: top, width, height, rx: 8, class: "source" }),
       svg("text", { x: x + 12, y: top + LINE, class: "name" }, `${title} (${entries.length})`),
       ...lines.map((line, i) => svg("text", { x: x + 12, y: top + (i + 2) * LINE, class: "reason" }, shortened(line, 40))),
-      svg("path", { d: `M${x + width} ${from}C${x + width + 30} ${from} ${COLUMNS.passes - 30} ${to} ${COLUMNS.passes - 7} ${to}m-7 -5l7 5l-7 5`, class: "flow" }),
+      svg("path", { d: arrow([x + width, from], [COLUMNS.passes - 7, to]), class: "flow" }),
     ];
   };
   return [{ height, feeds, draw }];
 }
 
-const lightText = ({ name, type, shadow }) => `${name}: ${type}, ${shadow ? `${shadow.filter} shadow, ${shadow.resolution} px` : "no shadow"}`;
+const shadowText = (shadow) => (shadow ? `${shadow.filter} shadow, ${shadow.resolution} px` : "no shadow");
+const lightText = ({ name, type, shadow }) => `${name}: ${type}, ${shadowText(shadow)}`;
 const effectText = ({ effects, kind }) => `${effects.join(" + ")}: ${kind}`;
-const drawText = ({ instance, triangles, transparent }) => `${instance}: ${triangles.toLocaleString()} triangles${transparent ? ", transparent" : ""}`;
+const drawText = ({ instance, triangles, transparent }) =>
+  `${instance}: ${triangles.toLocaleString()} triangles${transparent ? ", transparent" : ""}`;
 
 function leftOut(entries) {
   if (entries.length === 0) return element("p", {}, "Nothing is left out.");

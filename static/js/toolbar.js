@@ -63,7 +63,8 @@ function fileButtons(app) {
     takeFiles(app, [...input.files]);
     input.value = ""; // The same file may be chosen again.
   });
-  return [button("Add files", () => input.click(), { id: "add-files", title: "Models (OBJ with MTL and textures), images, scenes (JSON); or drop them anywhere" }), input];
+  const title = "Models (OBJ with MTL and textures), images, scenes (JSON); or drop them anywhere";
+  return [button("Add files", () => input.click(), { id: "add-files", title }), input];
 }
 
 function saveMenu(app) {

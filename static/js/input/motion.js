@@ -98,7 +98,8 @@ export class Motion {
     this.#last = now;
     this.#running = false;
     const held = this.#takeHeld(seconds);
-    const steps = [...this.#steps.splice(0), this.#wheelStep(seconds), ...this.#keySteps(held), this.#glideStep(now)].filter(Boolean);
+    const smooth = [this.#wheelStep(seconds), ...this.#keySteps(held), this.#glideStep(now)];
+    const steps = [...this.#steps.splice(0), ...smooth].filter(Boolean);
     if (steps.length > 0) this.#app.camera.change((camera) => steps.reduce((moved, step) => step(moved), camera));
     if (this.#app.selection.instance) this.#moveInstance(held);
     if (this.#held.size > 0 || this.#wheel !== null || this.#glide !== null) this.#schedule();

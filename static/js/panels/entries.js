@@ -1,6 +1,6 @@
 // A map of the document as a list to choose from, and the fields of what is chosen.
 
-import { field } from "../fields.js";
+import { field } from "./field.js";
 import { pointerOf } from "../merge.js";
 import { button, element } from "../dom.js";
 import { arrange } from "./parts.js";

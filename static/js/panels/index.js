@@ -1,7 +1,7 @@
 // The panels beside the picture.
 
 import { byId } from "../dom.js";
-import { clearErrors, showErrors } from "../fields.js";
+import { clearErrors, showErrors } from "./field.js";
 import { Problem } from "../server.js";
 import { Chosen } from "./chosen.js";
 import { onceOpen } from "./follow.js";

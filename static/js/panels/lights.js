@@ -1,6 +1,6 @@
 // The lights.
 
-import { field } from "../fields.js";
+import { field } from "./field.js";
 import { button, element } from "../dom.js";
 import { panel, row } from "./parts.js";
 import { addEntry } from "./edit.js";

@@ -2,7 +2,7 @@
 
 import { distanceOf } from "../camera.js";
 import { element } from "../dom.js";
-import { field } from "../fields.js";
+import { field } from "./field.js";
 import { degrees, radians } from "../vec.js";
 import { group, panel } from "./parts.js";
 import { choiceControl, choiceField } from "./fields/choice.js";

@@ -1,6 +1,6 @@
 // The sky: what is drawn where nothing else is, and the light that comes from everywhere.
 
-import { attempt, field } from "../fields.js";
+import { attempt, field } from "./field.js";
 import { pointerOf } from "../merge.js";
 import { Problem } from "../server.js";
 import { button, element } from "../dom.js";

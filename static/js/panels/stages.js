@@ -20,9 +20,11 @@ const STAGES = [
   ["shadow_map", "Shadow maps",
     "What each light sees, side by side, six for a lamp, bright near the light: drawn before everything else."],
   ["tiles", "Tiles",
-    "How many triangles each tile lists: 1 dark blue, 4 green, 25 yellow, 160 red, 1024 white. How the geometry stage shares out the work."],
+    "How many triangles each tile lists: 1 dark blue, 4 green, 25 yellow, 160 red, 1024 white. How the geometry "
+      + "stage shares out the work."],
   ["shaded", "Shaded fragments",
-    "How many fragments are shaded for each pixel: 1 dark blue, 4 green, 8 yellow, 12 red, 16 white. Where shading spends its time."],
+    "How many fragments are shaded for each pixel: 1 dark blue, 4 green, 8 yellow, 12 red, 16 white. Where shading "
+      + "spends its time."],
 ];
 
 /** A group of radio buttons that set what the live view shows. */

@@ -1,6 +1,6 @@
 // Choices among words, or among the names in a map of the document.
 
-import { field } from "../../fields.js";
+import { field } from "../field.js";
 import { same } from "../../merge.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";

@@ -1,6 +1,6 @@
 // Colours: one that a screen can show, and a factor for what is brighter than that.
 
-import { field } from "../../fields.js";
+import { field } from "../field.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
 import { NumberControl } from "./number.js";

@@ -1,6 +1,6 @@
 // Directions of light: a ball that shows how it falls, to be turned by dragging, and the numbers.
 
-import { field } from "../../fields.js";
+import { field } from "../field.js";
 import { clamp, degrees, radians, sub } from "../../vec.js";
 import { element, svg } from "../../dom.js";
 import { setAt } from "../edit.js";

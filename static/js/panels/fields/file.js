@@ -1,6 +1,6 @@
 // Files of the scene: names of what was uploaded, and ways to upload more.
 
-import { attempt, field } from "../../fields.js";
+import { attempt, field } from "../field.js";
 import { ask, getJson, scenePath } from "../../server.js";
 import { button, element } from "../../dom.js";
 import { setAt } from "../edit.js";

@@ -1,7 +1,7 @@
 // Maps of a material: a texture by its name, or an image that becomes one.
 
 import { freeName } from "../../actions.js";
-import { attempt, field } from "../../fields.js";
+import { attempt, field } from "../field.js";
 import { patchAt } from "../../merge.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";

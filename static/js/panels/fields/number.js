@@ -1,6 +1,6 @@
 // Numbers: typed, stepped with the arrow keys, dragged by their label, or set by a slider.
 
-import { field } from "../../fields.js";
+import { field } from "../field.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
 import { scrubbable } from "./scrub.js";

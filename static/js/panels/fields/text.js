@@ -1,6 +1,6 @@
 // A line of text.
 
-import { field } from "../../fields.js";
+import { field } from "../field.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
 

@@ -1,6 +1,6 @@
 // Yes or no.
 
-import { field } from "../../fields.js";
+import { field } from "../field.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
 

@@ -1,6 +1,6 @@
 // Vectors: a number for each axis.
 
-import { field } from "../../fields.js";
+import { field } from "../field.js";
 import { element } from "../../dom.js";
 import { setAt } from "../edit.js";
 import { NumberControl } from "./number.js";

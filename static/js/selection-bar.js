@@ -5,7 +5,7 @@ import { button, byId, element } from "./dom.js";
 import { MODES } from "./gizmo.js";
 
 /** Fills the bar; it shows while something is selected. */
-export function mountSelected(app, gizmo, bar) {
+export function mountSelectionBar(app, gizmo, bar) {
   const { scene, selection } = app;
   const name = element("strong");
   const modes = Object.entries(MODES).map(([mode, label]) => button(label, () => { gizmo.mode = mode; }, { "data-mode": mode }));
@@ -24,7 +24,9 @@ export function mountSelected(app, gizmo, bar) {
     hide.textContent = selection.instance?.visible === false ? "Show" : "Hide";
     for (const made of modes) made.setAttribute("aria-pressed", made.dataset.mode === gizmo.mode);
   };
-  const say = () => { byId("selection-said").textContent = selection.name === null ? "Nothing is selected" : `${selection.name} is selected`; };
+  const say = () => {
+    byId("selection-said").textContent = `${selection.name ?? "Nothing"} is selected`;
+  };
   selection.addEventListener("change", follow);
   selection.addEventListener("change", say);
   scene.addEventListener("change", follow);

@@ -1,9 +1,9 @@
 // Form fields bound to the open scene's document: a label, a control, and the server's word on it.
 
-import { valueAt } from "./merge.js";
-import { Problem } from "./server.js";
-import { element } from "./dom.js";
-import { follow } from "./panels/follow.js";
+import { valueAt } from "../merge.js";
+import { Problem } from "../server.js";
+import { element } from "../dom.js";
+import { follow } from "./follow.js";
 
 /** The fields by their elements, `.field[data-pointer]`. */
 const fields = new WeakMap();
