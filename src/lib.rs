@@ -21,5 +21,6 @@ pub mod metrics;
 pub mod model;
 pub mod pipeline;
 pub mod plan;
+pub mod report;
 pub mod scene;
 pub mod settings;
