@@ -112,7 +112,7 @@ pub struct Limits {
     /// `shadow.radius` and `shadow.search_radius` in texels: a wider kernel covers what no map
     /// resolves. Fixed.
     pub shadow_kernel_texels: u32,
-    /// `shadow.search_taps` and `shadow.filter_taps`: each is read at every lit pixel. Fixed.
+    /// `shadow.pcf_taps`, `shadow.search_taps` and `shadow.filter_taps`: each is read at every lit pixel. Fixed.
     pub shadow_taps: u32,
     /// Effects of one scene: each is a pass over the picture. Fixed.
     pub post_effects: usize,

@@ -16,8 +16,8 @@ const SECONDS: [f64; 17] = [
 ];
 
 /// What `Server-Timing` names but for `queue`, which has a family of its own, and `total`.
-const PASSES: [&str; 9] =
-    ["plan", "shadow", "geometry", "raster", "shade", "sky", "resolve", "post", "encode"];
+const PASSES: [&str; 10] =
+    ["plan", "shadow", "geometry", "raster", "shade", "sky", "resolve", "post", "resample", "encode"];
 
 /// What a drawn frame was for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

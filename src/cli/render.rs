@@ -52,6 +52,24 @@ struct FrameFlags {
     /// Samples a pixel: 1, 2, 4, 8 or 16
     #[arg(long, allow_hyphen_values = true)]
     samples: Option<String>,
+    /// Texels along a side of every shadow map
+    #[arg(long, allow_hyphen_values = true, value_name = "TEXELS")]
+    shadow_resolution: Option<String>,
+    /// Samples of every PCF
+    #[arg(long, allow_hyphen_values = true, value_name = "TAPS")]
+    pcf_taps: Option<String>,
+    /// Samples with which PCSS looks for blockers
+    #[arg(long, allow_hyphen_values = true, value_name = "TAPS")]
+    search_taps: Option<String>,
+    /// Samples with which PCSS filters
+    #[arg(long, allow_hyphen_values = true, value_name = "TAPS")]
+    filter_taps: Option<String>,
+    /// nearest, bilinear or trilinear, in place of every texture's but those that are nearest themselves
+    #[arg(long, allow_hyphen_values = true, value_name = "FILTER")]
+    texture_filter: Option<String>,
+    /// The picture is drawn with so many times the pixels along each side, and resampled
+    #[arg(long, allow_hyphen_values = true, value_name = "TIMES")]
+    render_scale: Option<String>,
     /// Seconds
     #[arg(long, allow_hyphen_values = true)]
     t: Option<String>,
@@ -98,10 +116,16 @@ struct FrameFlags {
 
 impl FrameFlags {
     fn pairs(&self) -> impl Iterator<Item = (&str, &str)> {
-        let flags: [(&str, _); 17] = [
+        let flags: [(&str, _); 23] = [
             ("width", &self.width),
             ("height", &self.height),
             ("samples", &self.samples),
+            ("shadow_resolution", &self.shadow_resolution),
+            ("pcf_taps", &self.pcf_taps),
+            ("search_taps", &self.search_taps),
+            ("filter_taps", &self.filter_taps),
+            ("texture_filter", &self.texture_filter),
+            ("render_scale", &self.render_scale),
             ("t", &self.t),
             ("quality", &self.quality),
             ("output", &self.output),

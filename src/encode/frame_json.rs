@@ -16,7 +16,7 @@ use serde_json::{Map, Value, json};
 /// 0 ≤ z ≤ w, with the near plane at z = w.
 #[must_use]
 pub fn frame_json(plan: &Plan, outputs: &[Output], depth_range: Option<[f64; 2]>) -> Vec<u8> {
-    let (view, camera) = (&plan.view, &plan.camera);
+    let (view, camera) = (&plan.view.with_size(plan.size), &plan.camera);
     let files: Map<String, Value> = outputs
         .iter()
         .map(|output| (output.word().to_owned(), json!(format!("{}.png", output.word()))))

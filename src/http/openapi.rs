@@ -26,6 +26,23 @@ pub(super) struct FrameQuery {
     height: Option<u32>,
     /// Samples a pixel: 1, 2, 4, 8 or 16
     samples: Option<u8>,
+    /// Texels along a side of every shadow map
+    #[param(minimum = 1, maximum = 16384)]
+    shadow_resolution: Option<u32>,
+    /// Samples of every PCF
+    #[param(minimum = 1, maximum = 1024)]
+    pcf_taps: Option<u32>,
+    /// Samples with which PCSS looks for blockers
+    #[param(minimum = 1, maximum = 1024)]
+    search_taps: Option<u32>,
+    /// Samples with which PCSS filters
+    #[param(minimum = 1, maximum = 1024)]
+    filter_taps: Option<u32>,
+    /// `nearest`, `bilinear` or `trilinear`, in place of every texture's but those that are `nearest` themselves
+    texture_filter: Option<String>,
+    /// The picture is drawn with so many times the pixels along each side, and resampled
+    #[param(minimum = 0.1, maximum = 4)]
+    render_scale: Option<f64>,
     /// Seconds
     t: Option<f64>,
     /// JPEG quality

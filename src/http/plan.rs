@@ -34,6 +34,9 @@ pub(super) struct FramePlan {
 struct Settled {
     width: u32,
     height: u32,
+    /// Width and height of what is drawn, where the picture is resampled
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drawn: Option<[u32; 2]>,
     samples: u32,
     /// Seconds
     t: f64,
@@ -169,8 +172,9 @@ impl FramePlan {
 impl Settled {
     fn of(plan: &Plan) -> Self {
         Self {
-            width: plan.view.width,
-            height: plan.view.height,
+            width: plan.size[0],
+            height: plan.size[1],
+            drawn: plan.is_resampled().then_some([plan.view.width, plan.view.height]),
             samples: plan.samples,
             t: plan.t,
             output: plan.output.word(),

@@ -192,7 +192,7 @@ impl<'a> Making<'a> {
         self.planning += planning;
         self.engine.metrics.observe_passes([("plan", milliseconds(planning))]);
         self.tag.add(&plan);
-        self.size = [plan.view.width, plan.view.height];
+        self.size = plan.size;
         self.depth_range = self.depth_range.or(plan.depth_range);
         Ok(plan)
     }

@@ -77,6 +77,15 @@ pub struct View {
 }
 
 impl View {
+    /// The same view in a picture of another size; its pixels need not be square.
+    #[must_use]
+    pub fn with_size(&self, [width, height]: [u32; 2]) -> Self {
+        let ratio = |to: u32, from: u32| f64::from(to) / f64::from(from);
+        let [x, y] = self.scale;
+        let scale = [x * ratio(width, self.width), y * ratio(height, self.height)];
+        Self { scale, width, height, ..*self }
+    }
+
     /// Pixels of the picture.
     #[must_use]
     pub fn pixels(&self) -> usize {

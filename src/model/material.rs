@@ -57,6 +57,12 @@ pub struct Material {
 }
 
 impl Material {
+    /// Every map it has.
+    pub fn maps(&self) -> impl Iterator<Item = &Arc<Texture>> {
+        let colors = [&self.diffuse_map, &self.specular_map, &self.emissive_map];
+        colors.into_iter().chain([&self.normal_map, &self.bump_map, &self.opacity_map]).flatten()
+    }
+
     /// Its normal map, unless that is flat.
     #[must_use]
     pub fn normals(&self) -> Option<&Arc<Texture>> {

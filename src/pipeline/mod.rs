@@ -16,6 +16,7 @@ mod pick;
 mod picture;
 pub mod post;
 pub mod program;
+mod resample;
 mod resolve;
 pub mod samples;
 pub mod shade;
@@ -142,7 +143,12 @@ impl<'a> Draft<'a> {
         shaded: u64,
         work: &Work,
     ) -> Result<Frame, Cancelled> {
-        let pixels = picture.finish(self.plan, shared, &self.chain, &mut self.timings, work)?;
+        let mut pixels = picture.finish(self.plan, shared, &self.chain, &mut self.timings, work)?;
+        if self.plan.is_resampled() {
+            let began = Instant::now();
+            pixels = resample::to_size(pixels, self.plan, work)?;
+            self.timings.push("resample", milliseconds(began));
+        }
         let stats = Stats::new(self.counts, shaded, self.plan);
         Ok(Frame::new(self.plan, pixels, stats, self.timings))
     }

@@ -43,7 +43,7 @@ pub enum Pixels {
 
 impl Frame {
     pub(super) fn new(plan: &Plan, pixels: Pixels, stats: Stats, timings: Timings) -> Self {
-        let (width, height) = (plan.view.width, plan.view.height);
+        let [width, height] = plan.size;
         Self { width, height, pixels, stats, timings, depth_range: plan.depth_range }
     }
 }

@@ -18,8 +18,15 @@ pub fn of(plan: &Plan) -> String {
     // Debug prints the shortest decimal that reads back as the same f64: exact.
     write!(
         settled,
-        "{view:?} {:?} {:?} {} {:?} {:?} {shading:?} {:?}",
-        plan.t, plan.output, plan.samples, plan.background, plan.depth_range, scene.render.cull
+        "{view:?} {:?} {:?} {:?} {:?} {} {:?} {:?} {shading:?} {:?}",
+        plan.size,
+        plan.knobs,
+        plan.t,
+        plan.output,
+        plan.samples,
+        plan.background,
+        plan.depth_range,
+        scene.render.cull
     )
     .expect("writing to a string succeeds");
     hash.update(settled.as_bytes());

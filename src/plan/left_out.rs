@@ -51,6 +51,8 @@ pub enum Part {
     Background,
     /// Samples beyond the first.
     Samples,
+    /// Pixels of another size than the picture's.
+    RenderScale,
     /// All that the camera sees.
     View,
 }
@@ -126,6 +128,7 @@ impl Part {
             Self::Effect(index) => format!("post effect {index} ({})", scene.post[index].type_name()),
             Self::Background => "background".to_owned(),
             Self::Samples => "samples".to_owned(),
+            Self::RenderScale => "render scale".to_owned(),
             Self::View => "view of the camera".to_owned(),
         }
     }

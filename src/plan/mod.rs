@@ -10,6 +10,7 @@ pub mod opacity;
 mod passes;
 mod post;
 pub mod request;
+mod resampling;
 mod shadow;
 mod surface;
 mod variant;
@@ -22,7 +23,8 @@ pub use passes::Pass;
 pub use post::{
     Bloom, Curve, Fxaa, Gaussian, Kernel, KernelRow, Neighbourhood, Pointwise, PostChain, PostPass, Sharpen,
 };
-pub use request::{FrameRequest, Output, QueryFault};
+pub use request::{FrameRequest, Knobs, Output, QueryFault};
+pub use resampling::{AxisTaps, Resampling};
 pub use shadow::{CasterTest, Face, Filter, Maps, Pcss, ShadowPass, WIDEST_TANGENT, orthonormal_basis};
 
 use crate::limits::Limits;
@@ -45,8 +47,10 @@ pub struct Plan {
     pub output: Output,
     /// The camera.
     pub camera: ResolvedCamera,
-    /// What it sees.
+    /// What it sees, in the pixels that are drawn.
     pub view: View,
+    /// Pixels along the sides of the picture: those that are drawn, unless it is resampled.
+    pub size: [u32; 2],
     /// Samples a pixel.
     pub samples: u32,
     /// Visible instances that reach into the view, in submission order.
@@ -69,6 +73,8 @@ pub struct Plan {
     pub left_out: Vec<LeftOut>,
     /// What overrides the shading of its materials.
     shading: Option<Shading>,
+    /// What overrides how much work goes into it.
+    knobs: Knobs,
     /// Working memory that it will take.
     bytes: u64,
     /// That of its items among it.
@@ -136,8 +142,12 @@ impl Plan {
         let background = background(scene, request)?;
         let camera = camera(scene, request, width, height)?;
         let bounds = scene.bounds(t);
-        let view = view::of_camera(&camera, bounds, width, height);
         let is_shaded = request.output.is_shaded();
+        let knobs = request.knobs.that_change(scene);
+        let size = [width, height];
+        let drawn = if is_shaded { knobs.drawn_size(size) } else { size };
+        check_picture(drawn[0], drawn[1], limits)?;
+        let view = view::of_camera(&camera, bounds, size).with_size(drawn);
         let samples = request.samples.unwrap_or(scene.render.samples);
         let mut plan = Self {
             scene: scene.clone(),
@@ -145,6 +155,7 @@ impl Plan {
             output: request.output,
             camera,
             view,
+            size,
             samples: if request.output.looks_as_color() { samples } else { 1 },
             items: Vec::new(),
             draws: Vec::new(),
@@ -156,6 +167,7 @@ impl Plan {
             depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
             left_out: Vec::new(),
             shading: request.shading.or(scene.render.shading),
+            knobs,
             bytes: 0,
             geometry_bytes: 0,
         };
@@ -163,10 +175,34 @@ impl Plan {
         if !is_shaded {
             plan.leave_out_light(samples);
         }
-        plan.charge(u64::from(width) * u64::from(height) * request.output.pixel_bytes(), limits)?;
-        let transparent = plan.background == Background::Transparent;
-        plan.charge(plan.post.frame_bytes(width, height, transparent), limits)?;
+        plan.charge_picture(limits)?;
         Ok(plan)
+    }
+
+    /// Adds what its pixels take until they are written.
+    fn charge_picture(&mut self, limits: &Limits) -> Result<(), PlanError> {
+        let pixels = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+        let drawn = [self.view.width, self.view.height];
+        let transparent = self.background == Background::Transparent;
+        self.charge(pixels(drawn) * self.output.pixel_bytes(), limits)?;
+        self.charge(self.post.frame_bytes(drawn[0], drawn[1], transparent), limits)?;
+        if self.is_resampled() {
+            self.charge(pixels(self.size) * self.output.pixel_bytes(), limits)?;
+            self.charge(Resampling::frame_bytes(drawn, self.size), limits)?;
+        }
+        Ok(())
+    }
+
+    /// What overrides how much work goes into it, where that changes something.
+    #[must_use]
+    pub fn knobs(&self) -> &Knobs {
+        &self.knobs
+    }
+
+    /// Whether the pixels that are drawn are not those of the picture.
+    #[must_use]
+    pub fn is_resampled(&self) -> bool {
+        self.size != [self.view.width, self.view.height]
     }
 
     /// Settles the effects: colour alone has any.
@@ -174,8 +210,9 @@ impl Plan {
         let effects = &self.scene.post;
         let reason = match self.output {
             Output::Color => {
-                let size = [self.view.width, self.view.height];
-                self.post = PostChain::settle(effects, size, &mut self.left_out);
+                let drawn = [self.view.width, self.view.height];
+                let scale = f64::from(drawn[1]) / f64::from(self.size[1]);
+                self.post = PostChain::settle(effects, drawn, scale, &mut self.left_out);
                 return;
             }
             Output::Radiance => Reason::BeforePost,
@@ -191,6 +228,9 @@ impl Plan {
         self.leave_out(Part::Background, reason);
         if self.samples < samples {
             self.leave_out(Part::Samples, reason);
+        }
+        if self.knobs.render_scale.is_some() {
+            self.leave_out(Part::RenderScale, reason);
         }
     }
 
@@ -247,12 +287,12 @@ impl Plan {
     fn add_draw(&mut self, instance: u32, slot: u32) -> Option<Slot> {
         let scene = &self.scene;
         let of = &scene.instances[instance as usize];
-        let material = &scene.materials[of.materials[slot as usize] as usize];
-        let transparency = opacity::of_output(material, self.output)?;
+        let material = self.knobs.material(&scene.materials[of.materials[slot as usize] as usize]);
+        let transparency = opacity::of_output(&material, self.output)?;
         let (mesh, tangents) = (scene.mesh(of), scene.tangents(of));
         let (receives, shading) = (of.receives_shadow, self.shading);
         let surface =
-            surface::settle(material, mesh, tangents, receives, shading, self.output, &transparency);
+            surface::settle(&material, mesh, tangents, receives, shading, self.output, &transparency);
         let cull = if material.double_sided { Cull::None } else { scene.render.cull };
         let opacity = transparency.opacity();
         let (item, draw) = (number(self.items.len()), number(self.draws.len()));
@@ -273,6 +313,7 @@ impl Plan {
                 continue;
             }
             let shadow = light.shadow.and_then(|shadow| {
+                let shadow = self.knobs.shadow(shadow);
                 let pass = self.shadow(index, light, &shadow, receives, &mut participants);
                 pass.map_err(|reason| self.leave_out(Part::Shadow(index), reason)).ok()
             });

@@ -30,6 +30,7 @@ impl Plan {
             ("sky", self.why_sky()),
             ("resolve", self.why_resolve()),
             ("post", self.why_post()),
+            ("resample", self.why_resample()),
             ("encode", Ok("The picture is written as a file.".to_owned())),
         ];
         let pass = |(name, why): (_, Why)| {
@@ -125,6 +126,14 @@ impl Plan {
                 Ok(format!("A pixel is the mean of {samples}, and goes through {effects} on its way."))
             }
         }
+    }
+
+    fn why_resample(&self) -> Why {
+        if !self.is_resampled() {
+            return Err("The pixels that are drawn are those of the picture.".to_owned());
+        }
+        let ([width, height], [drawn_width, drawn_height]) = (self.size, [self.view.width, self.view.height]);
+        Ok(format!("{drawn_width} × {drawn_height} pixels are drawn for a picture of {width} × {height}."))
     }
 
     fn why_post(&self) -> Why {

@@ -92,14 +92,20 @@ impl PostChain {
     /// Settles `effects` for a picture of `width × height` pixels.
     #[must_use]
     pub fn new(effects: &[PostEffect], width: u32, height: u32) -> Self {
-        Self::settle(effects, [width, height], &mut Vec::new())
+        Self::settle(effects, [width, height], 1.0, &mut Vec::new())
     }
 
-    /// The same, with a note in `left_out` of each effect that changes nothing.
-    pub(super) fn settle(effects: &[PostEffect], size: [u32; 2], left_out: &mut Vec<LeftOut>) -> Self {
+    /// The same, with a note in `left_out` of each effect that changes nothing. A pixel of a document is
+    /// `scale` pixels of the picture.
+    pub(super) fn settle(
+        effects: &[PostEffect],
+        size: [u32; 2],
+        scale: f64,
+        left_out: &mut Vec<LeftOut>,
+    ) -> Self {
         let mut chain = Self::default();
         for (index, effect) in effects.iter().enumerate() {
-            match settle(effect, size) {
+            match settle(effect, size, scale) {
                 Ok(step) => chain.push(step),
                 Err(reason) => left_out.push(LeftOut { part: Part::Effect(index), reason }),
             }
@@ -148,7 +154,7 @@ impl PostChain {
 }
 
 /// An effect as a step, or why it would change nothing.
-fn settle(effect: &PostEffect, size: [u32; 2]) -> Result<Step, Reason> {
+fn settle(effect: &PostEffect, size: [u32; 2], scale: f64) -> Result<Step, Reason> {
     let pointwise = |step| Ok(Step::Pointwise(step));
     let neighbourhood = |effect| Ok(Step::Neighbourhood(effect));
     match effect {
@@ -163,14 +169,15 @@ fn settle(effect: &PostEffect, size: [u32; 2]) -> Result<Step, Reason> {
         PostEffect::ColorMatrix { matrix } => {
             pointwise(Pointwise::ColorMatrix(matrix.map(|row| row.map(round_to_f32))))
         }
-        PostEffect::Blur { radius } => {
-            Gaussian::new(*radius).ok_or(Reason::TooSmall).map(Neighbourhood::Blur).and_then(neighbourhood)
-        }
+        PostEffect::Blur { radius } => Gaussian::new(radius * scale)
+            .ok_or(Reason::TooSmall)
+            .map(Neighbourhood::Blur)
+            .and_then(neighbourhood),
         PostEffect::Bloom { intensity: 0.0, .. } => Err(Reason::NoIntensity),
         PostEffect::Bloom { threshold, intensity, radius } => neighbourhood(Neighbourhood::Bloom(Bloom {
             threshold: factor(*threshold),
             intensity: factor(*intensity),
-            gaussian: Gaussian::new(*radius),
+            gaussian: Gaussian::new(radius * scale),
         })),
         PostEffect::Sharpen { amount } => {
             neighbourhood(Neighbourhood::Sharpen(Sharpen { amount: factor(*amount) }))

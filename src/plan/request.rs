@@ -1,8 +1,10 @@
 //! What a client asks of one frame, as typed overrides of the scene's own settings.
 
+mod knobs;
 mod parse;
 mod query;
 
+pub use knobs::Knobs;
 pub use query::{Query, QueryFault};
 
 use crate::model::Shading;
@@ -20,6 +22,8 @@ pub struct FrameRequest {
     pub height: Option<u32>,
     /// Samples a pixel: 1, 2, 4, 8 or 16.
     pub samples: Option<u32>,
+    /// What else trades error for run time.
+    pub knobs: Knobs,
     /// Seconds; a single frame's default is 0.
     pub t: f64,
     /// JPEG quality, 1–100.

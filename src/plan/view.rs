@@ -5,7 +5,7 @@ use crate::scene::Lens;
 use crate::scene::framing::ResolvedCamera;
 
 /// Turns a settled camera into the view of a picture.
-pub fn of_camera(camera: &ResolvedCamera, bounds: Option<Bounds>, width: u32, height: u32) -> View {
+pub fn of_camera(camera: &ResolvedCamera, bounds: Option<Bounds>, [width, height]: [u32; 2]) -> View {
     let rows = f64::from(height) * 256.0;
     let (projection, scale) = match camera.lens {
         Lens::Perspective { fov_y_deg } => {

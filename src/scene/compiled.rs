@@ -176,6 +176,8 @@ pub struct Shadow {
     pub bias: f64,
     /// PCF kernel radius in texels.
     pub radius: f64,
+    /// PCF taps.
+    pub pcf_taps: u32,
     /// PCSS: tangent of the half-angle (directional) or radius in world units (point).
     pub light_radius: f64,
     /// PCSS blocker search radius in texels; `None`: from `light_radius`.

@@ -67,6 +67,7 @@ fn shadow(light: &str, shadow: &ShadowPart, limits: &Limits) -> Result<(), Scene
         ("bias", whole(shadow.bias), limits.shadow_bias),
         ("radius in texels", whole(shadow.radius), limits.shadow_kernel_texels),
         ("search_radius in texels", whole(shadow.search_radius.unwrap_or(0.0)), limits.shadow_kernel_texels),
+        ("pcf_taps", shadow.pcf_taps, limits.shadow_taps),
         ("search_taps", shadow.search_taps, limits.shadow_taps),
         ("filter_taps", shadow.filter_taps, limits.shadow_taps),
     ];

@@ -197,6 +197,7 @@ fn what_is_over_a_limit_is_named_with_it() {
         (sun_shadow(json!({"bias": 1000.5})), 1000, 1001),
         (sun_shadow(json!({"radius": 1e30})), 1024, u64::MAX),
         (sun_shadow(json!({"search_radius": 1025})), 1024, 1025),
+        (sun_shadow(json!({"pcf_taps": 1025})), 1024, 1025),
         (sun_shadow(json!({"search_taps": 1025})), 1024, 1025),
         (sun_shadow(json!({"filter_taps": 5000})), 1024, 5000),
         (json!({"post": [{"type": "blur", "radius": 257}]}), 256, 257),

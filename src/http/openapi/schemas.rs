@@ -33,7 +33,7 @@ fn takes_gallery(operation: &Value) -> bool {
 fn of_parameter(name: &str) -> Option<Value> {
     match name {
         "samples" => Some(json!({ "type": "integer", "enum": [1, 2, 4, 8, 16] })),
-        "output" | "shading" => Some(words(&FrameRequest::words(name))),
+        "output" | "shading" | "texture_filter" => Some(words(&FrameRequest::words(name))),
         "outputs" => Some(listed(&Output::all())),
         "up" => Some(words(&["y", "z"])),
         "from" => {

@@ -144,6 +144,26 @@ pub fn write_radiance(level: Level, resolved: &Resolved, tile: Tile<[f32; 4]>) {
     });
 }
 
+/// Writes a picture's colours as [`write_radiance`] does.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn write_radiance_frame(
+    frame: &LinearFrame,
+    pixels: &mut [[f32; 4]],
+    work: &Work,
+) -> Result<(), Cancelled> {
+    let rows = (0..).zip(pixels.chunks_mut(frame.width)).collect();
+    work.map(
+        rows,
+        || (),
+        |(), (y, row): (usize, &mut [[f32; 4]])| {
+            dispatch!(work.level, simd => radiance_row(simd, &frame.row(y), row));
+        },
+    )?;
+    Ok(())
+}
+
 #[inline(always)]
 fn radiance_row<S: Simd>(simd: S, from: &Row, to: &mut [[f32; 4]]) {
     for (x, pixels) in (0..).step_by(LANES).zip(to.chunks_mut(LANES)) {

@@ -6,7 +6,7 @@ mod heat;
 mod shadow_maps;
 mod wireframe;
 
-pub use colors::{Row, encode_frame, encode_tile, write_radiance};
+pub use colors::{Row, encode_frame, encode_tile, write_radiance, write_radiance_frame};
 pub use shadow_maps::draw as draw_shadow_maps;
 pub use wireframe::draw as draw_wireframe;
 

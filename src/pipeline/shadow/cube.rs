@@ -7,11 +7,11 @@
 mod kernel;
 mod receiver;
 
+use super::HALF_TEXEL;
 use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
 use super::penumbra::{Light, MapFilter, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
-use super::{HALF_TEXEL, PCF_TAPS};
 use crate::math::round_to_f32;
 use crate::math::simd::*;
 use crate::pipeline::shade::{BLOCK, varyings::Receivers};
@@ -312,9 +312,9 @@ fn filter(
     let bias = round_to_f32(pass.bias);
     Ok(match &pass.filter {
         Filter::Hard => CubeFilter::Hard,
-        Filter::Pcf { radius } => {
+        Filter::Pcf { radius, taps } => {
             let kernel = PcfKernel { tangent: round_to_f32(radius / focal_length), bias };
-            CubeFilter::Pcf { pyramid: pyramids()?, disc: Disc::new(PCF_TAPS), kernel }
+            CubeFilter::Pcf { pyramid: pyramids()?, disc: Disc::new(*taps), kernel }
         }
         Filter::Pcss(Pcss { light_radius, search_radius, search_taps, filter_taps }) => CubeFilter::Pcss {
             pyramid: pyramids()?,

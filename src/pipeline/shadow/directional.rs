@@ -4,7 +4,7 @@ use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
 use super::penumbra::{Light, MapFilter, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
-use super::{DEPTH_TOLERANCE, PCF_TAPS, WIDEST_CONE};
+use super::{DEPTH_TOLERANCE, WIDEST_CONE};
 use crate::math::round_to_f32;
 use crate::math::simd::*;
 use crate::pipeline::shade::{BLOCK, varyings::Receivers};
@@ -81,10 +81,10 @@ impl DirectionalMap {
         let texels = face.view.scale.map(|scale| scale / 256.0);
         let filter = match &pass.filter {
             Filter::Hard => MapFilter::Hard,
-            Filter::Pcf { radius } => {
+            Filter::Pcf { radius, taps } => {
                 let rise = radius * pass.bias * face.view.depth_slope() / texels[0].min(texels[1]);
                 let kernel = Kernel { radius: [round_to_f32(*radius); 2], rise: round_to_f32(rise) };
-                MapFilter::Pcf { pyramid: Pyramid::over(&depth, work)?, disc: Disc::new(PCF_TAPS), kernel }
+                MapFilter::Pcf { pyramid: Pyramid::over(&depth, work)?, disc: Disc::new(*taps), kernel }
             }
             Filter::Pcss(pcss) => MapFilter::Pcss {
                 pyramid: Pyramid::over(&depth, work)?,

@@ -50,9 +50,6 @@ pub enum ShadowMap {
     Cube(Box<CubeMap>),
 }
 
-/// Taps of PCF.
-const PCF_TAPS: u32 = 16;
-
 /// A receiver's own rounding: 16 units in the last place of the depth range.
 const DEPTH_TOLERANCE: f32 = 16.0 * f32::EPSILON * 0.5;
 

@@ -1,16 +1,20 @@
 //! The frame query: text in, [`FrameRequest`] out, or every fault at once.
 
 use super::query::{in_range, integer, not_one_of, numbers, positive, quoted};
-use super::{BackgroundRequest, Elide, FrameRequest, Orbit, Output, Query, QueryFault};
+use super::{BackgroundRequest, Elide, FrameRequest, Knobs, Orbit, Output, Query, QueryFault};
 use crate::limits::Limits;
 use crate::math::colour::linear_from_srgb8;
-use crate::model::Shading;
+use crate::model::{Filter, Shading};
+use crate::scene::document::words::Word;
 use crate::scene::document::{MAX_FOV_Y_DEG, MIN_FOV_Y_DEG};
 use glam::Vec3;
 use std::str::FromStr;
 
 /// Words of `shading`: those of a document.
-const SHADINGS: &[(&str, Shading)] = <Shading as crate::scene::document::words::Word>::WORDS;
+const SHADINGS: &[(&str, Shading)] = <Shading as Word>::WORDS;
+
+/// Words of `texture_filter`: those of a document.
+const FILTERS: &[(&str, Filter)] = <Filter as Word>::WORDS;
 
 /// Words of `output` for what the scene shows.
 const OUTPUTS: [(&str, Output); 6] = [
@@ -40,12 +44,13 @@ impl FrameRequest {
     /// Parameters of the contract that this version knows but does not serve.
     pub const NOT_YET: [&str; 3] = ["preset", "max_ms", "max_error"];
 
-    /// The words that `shading` and `output` take; none for another parameter.
+    /// The words that `shading`, `output` and `texture_filter` take; none for another parameter.
     #[must_use]
     pub fn words(parameter: &str) -> Vec<&'static str> {
         match parameter {
             "shading" => SHADINGS.iter().map(|(word, _)| *word).collect(),
             "output" => outputs().map(|(word, _)| word).collect(),
+            "texture_filter" => FILTERS.iter().map(|(word, _)| *word).collect(),
             _ => Vec::new(),
         }
     }
@@ -67,6 +72,7 @@ impl FrameRequest {
             width: query.parsed("width", side),
             height: query.parsed("height", side),
             samples: query.one_of("samples", &[("1", 1), ("2", 2), ("4", 4), ("8", 8), ("16", 16)]),
+            knobs: Knobs::read(query),
             t: query.number("t").unwrap_or(0.0),
             quality: query.integer_in("quality", 1..=100).and_then(|quality| u8::try_from(quality).ok()),
             output: query.parsed("output", output).unwrap_or_default(),
@@ -103,6 +109,21 @@ impl FrameRequest {
             && far <= near
         {
             query.fault("far", format!("must be greater than near ({near}), is {far}"));
+        }
+    }
+}
+
+impl Knobs {
+    /// Reads them out of a query that may hold other parameters too.
+    pub fn read(query: &mut Query) -> Self {
+        let limits = Limits::default();
+        Self {
+            shadow_resolution: query.integer_in("shadow_resolution", 1..=limits.texture_side),
+            pcf_taps: query.integer_in("pcf_taps", 1..=limits.shadow_taps),
+            search_taps: query.integer_in("search_taps", 1..=limits.shadow_taps),
+            filter_taps: query.integer_in("filter_taps", 1..=limits.shadow_taps),
+            texture_filter: query.one_of("texture_filter", FILTERS),
+            render_scale: query.number_in("render_scale", Self::SCALES),
         }
     }
 }
@@ -236,6 +257,12 @@ mod tests {
             ("width", "320"),
             ("height", "200"),
             ("samples", "8"),
+            ("shadow_resolution", "512"),
+            ("pcf_taps", "9"),
+            ("search_taps", "10"),
+            ("filter_taps", "11"),
+            ("texture_filter", "bilinear"),
+            ("render_scale", "0.5"),
             ("t", "-1.5"),
             ("quality", "90"),
             ("output", "depth"),
@@ -252,6 +279,14 @@ mod tests {
             width: Some(320),
             height: Some(200),
             samples: Some(8),
+            knobs: Knobs {
+                shadow_resolution: Some(512),
+                pcf_taps: Some(9),
+                search_taps: Some(10),
+                filter_taps: Some(11),
+                texture_filter: Some(Filter::Bilinear),
+                render_scale: Some(0.5),
+            },
             t: -1.5,
             quality: Some(90),
             output: Output::Depth,

@@ -62,7 +62,7 @@ pub(super) fn faces(
 fn kernel_tangent(filter: &Filter, focal_length: f64, near: f64) -> f64 {
     let tangent = match filter {
         Filter::Hard => 0.0,
-        Filter::Pcf { radius } => radius / focal_length,
+        Filter::Pcf { radius, .. } => radius / focal_length,
         // The light's disc as the receiver sees it through the nearest blocker.
         Filter::Pcss(pcss) => {
             let search = pcss.search_radius.map_or(0.0, |radius| radius / focal_length);

@@ -71,7 +71,7 @@ fn kernel_reach(filter: &Filter, cast: &Bounds, receive: &Bounds) -> DVec3 {
 fn margin_texels(filter: &Filter) -> f64 {
     match filter {
         Filter::Hard | Filter::Pcss(_) => 1.0,
-        Filter::Pcf { radius } => 1.0 + radius,
+        Filter::Pcf { radius, .. } => 1.0 + radius,
     }
 }
 

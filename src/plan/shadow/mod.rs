@@ -114,6 +114,8 @@ pub enum Filter {
     Pcf {
         /// In texels, > 0.
         radius: f64,
+        /// At least one.
+        taps: u32,
     },
     /// A disc whose size follows the distance to what blocks the light.
     Pcss(Pcss),
@@ -137,7 +139,9 @@ impl Filter {
     /// A kernel of no size is one tap.
     fn settle(shadow: &Shadow) -> Self {
         match shadow.filter {
-            ShadowFilter::Pcf if shadow.radius > 0.0 => Self::Pcf { radius: shadow.radius },
+            ShadowFilter::Pcf if shadow.radius > 0.0 => {
+                Self::Pcf { radius: shadow.radius, taps: shadow.pcf_taps }
+            }
             ShadowFilter::Pcss if shadow.light_radius > 0.0 => Self::Pcss(Pcss {
                 light_radius: shadow.light_radius,
                 search_radius: shadow.search_radius,

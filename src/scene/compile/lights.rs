@@ -36,6 +36,7 @@ fn shadow(part: &ShadowPart) -> Option<Shadow> {
         resolution: small(part.resolution),
         bias: part.bias,
         radius: part.radius,
+        pcf_taps: small(part.pcf_taps),
         light_radius: part.light_radius,
         search_radius: part.search_radius,
         search_taps: small(part.search_taps),

@@ -51,6 +51,8 @@ pub struct ShadowPart {
     pub bias: f64,
     /// PCF kernel radius in texels.
     pub radius: f64,
+    /// PCF taps.
+    pub pcf_taps: u64,
     /// PCSS: tangent of the half-angle (directional) or radius in world units (point).
     pub light_radius: f64,
     /// PCSS blocker search radius in texels; `None`: from `light_radius`.
@@ -72,6 +74,7 @@ impl ShadowPart {
             resolution: 2048,
             bias: 1.0,
             radius: 1.5,
+            pcf_taps: 16,
             light_radius: 0.01,
             search_radius: None,
             search_taps: 18,
@@ -93,6 +96,7 @@ impl ShadowPart {
             resolution: o.or("resolution", default.resolution, |n| n.count_from(1)),
             bias: o.or("bias", default.bias, Node::not_negative),
             radius: o.or("radius", default.radius, Node::not_negative),
+            pcf_taps: o.or("pcf_taps", default.pcf_taps, |n| n.count_from(1)),
             light_radius: o.or("light_radius", default.light_radius, Node::not_negative),
             search_radius: o.optional("search_radius", Node::not_negative),
             search_taps: o.or("search_taps", default.search_taps, |n| n.count_from(1)),
@@ -195,6 +199,7 @@ impl ToJson for ShadowPart {
             .with("resolution", &self.resolution)
             .with("bias", &self.bias)
             .with("radius", &self.radius)
+            .with("pcf_taps", &self.pcf_taps)
             .with("light_radius", &self.light_radius)
             .with_some("search_radius", self.search_radius.as_ref())
             .with("search_taps", &self.search_taps)

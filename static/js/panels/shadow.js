@@ -80,25 +80,31 @@ function shadowFields(scene, at, { type, shadow }) {
 }
 
 function pcfFields(scene, at) {
-  return [numberField(scene, `${at}/radius`, {
-    label: "Radius", unit: "texels", step: 0.1, min: 0, max: 1024, range: [0, 8],
-    hint: "Of the filter: how wide the even edge is",
-  })];
+  return [
+    numberField(scene, `${at}/radius`, {
+      label: "Radius", unit: "texels", step: 0.1, min: 0, max: 1024, range: [0, 8],
+      hint: "Of the filter: how wide the even edge is",
+    }),
+    tapsField(scene, `${at}/pcf_taps`, "Samples to filter"),
+  ];
+}
+
+function tapsField(scene, at, label) {
+  return numberField(scene, at, { label, step: 1, min: 1, max: 1024 });
 }
 
 function pcssFields(scene, at, type) {
   const size = type === "point"
     ? { label: "Size of the light", unit: "world units", range: [0, 0.5], hint: "Its radius" }
     : { label: "Size of the light", unit: "tangent", range: [0, 0.2], hint: HALF_ANGLE };
-  const taps = (member, label) => numberField(scene, `${at}/${member}`, { label, step: 1, min: 1, max: 1024 });
   return [
     numberField(scene, `${at}/light_radius`, { ...size, step: 0.001, min: 0 }),
     numberField(scene, `${at}/search_radius`, {
       label: "Search radius", unit: "texels", absent: "from the size", step: 1, min: 0, max: 1024,
       hint: "How far blockers are looked for",
     }),
-    taps("search_taps", "Samples to find blockers"),
-    taps("filter_taps", "Samples to filter"),
+    tapsField(scene, `${at}/search_taps`, "Samples to find blockers"),
+    tapsField(scene, `${at}/filter_taps`, "Samples to filter"),
   ];
 }
 

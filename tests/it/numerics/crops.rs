@@ -9,6 +9,7 @@ fn cropped(plan: &Plan, [width, height]: [u32; 2]) -> Plan {
     let mut plan = plan.clone();
     assert!((plan.view.width - width).is_multiple_of(2) && (plan.view.height - height).is_multiple_of(2));
     (plan.view.width, plan.view.height) = (width, height);
+    plan.size = [width, height];
     plan
 }
 

@@ -6,6 +6,7 @@ mod effects;
 mod examples;
 mod faces;
 mod golden;
+mod knobs;
 mod lighting;
 mod maps;
 mod outputs;

@@ -50,7 +50,7 @@ fn receiver(rng: &mut Random, lens: &Lens) -> Receiver {
 #[test]
 fn the_pyramids_answer_as_every_tap_would() {
     let mut rng = Random::new(0x5eed_0005);
-    let disc = Disc::new(PCF_TAPS);
+    let disc = Disc::new(16);
     let (mut lit, mut dark, mut mixed) = (0, 0, 0);
     for resolution in [16, 64, 200, 333] {
         let (map, pyramids) = rugged(&mut rng, resolution);

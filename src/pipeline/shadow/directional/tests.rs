@@ -33,7 +33,7 @@ fn receiver(rng: &mut Random, resolution: u32) -> Receiver {
 #[test]
 fn the_pyramid_answers_as_every_tap_would() {
     let mut rng = Random::new(0x5eed_0002);
-    let disc = Disc::new(PCF_TAPS);
+    let disc = Disc::new(16);
     let (mut lit, mut dark, mut mixed) = (0, 0, 0);
     for resolution in [1, 50, 64, 200, 333] {
         let map = rugged(&mut rng, resolution);
