@@ -1,0 +1,174 @@
+//! What pictures are measured against: a ray caster in f64 that shares no code with the pipeline.
+//!
+//! In: a compiled scene and a settled camera. Out: radiance, the picture after its effects in linear
+//! light, and how much of both is noise. It reads like the textbook, and takes its time.
+//!
+//! ```text
+//! sequence → camera → world (bvh) → point → shading (texture, relief, light) → pixel → post
+//!                                 ↘ background ────────────────────────────↗
+//! ```
+//!
+//! Where the pipeline approximates, this is what it approximates: coverage is a box filter over the
+//! pixel's square, a shadow a ray from the surface to the light (for PCSS to a place of a disc), a
+//! texture its full-size picture seen by every sample. `pcf` blurs a hard shadow by the texels of its
+//! map, and `fxaa` imitates what many samples are: neither has a limit of its own, so a hard shadow and
+//! no effect stand for them.
+
+mod background;
+mod bvh;
+mod camera;
+mod light;
+mod pixel;
+mod point;
+mod post;
+mod relief;
+mod sequence;
+mod shading;
+mod texture;
+mod world;
+
+use crate::model::Shading;
+use crate::pipeline::{Cancelled, Work};
+use crate::scene::framing::ResolvedCamera;
+use crate::scene::{Background, Scene};
+use camera::Camera;
+use light::Lamp;
+use pixel::{Pixel, Studio};
+use shading::Lighting;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use world::World;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The scene. Its triangles take about as much memory as those of a frame.
+    pub scene: &'a Scene,
+    /// Who looks at it.
+    pub camera: ResolvedCamera,
+    /// Width and height of the picture in pixels, at least 1.
+    pub size: [u32; 2],
+    /// Seconds.
+    pub t: f64,
+    /// What is seen where nothing else is.
+    pub background: &'a Background,
+    /// Overrides every material; `None`: as the scene has it.
+    pub shading: Option<Shading>,
+}
+
+/// How much work a pixel gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Samples of every pixel; at least 2 are taken.
+    pub base: u32,
+    /// Samples of a pixel whose samples do not agree: at edges, in penumbrae, on detailed textures.
+    pub most: u32,
+    /// How much its colour, clamped to 0–1, may be off before that is more samples' worth.
+    pub noise: f64,
+}
+
+/// A picture without approximations. Rows run from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Linear red, green, blue, premultiplied with alpha, and alpha: before `post`, every sample clamped
+    /// to 65504.
+    pub radiance: Vec<[f64; 4]>,
+    /// Linear red, green and blue after `post`, clamped to 0–1, over white; not encoded.
+    pub color: Vec<[f64; 3]>,
+    /// Samples that were spent on each pixel.
+    pub samples: Vec<u32>,
+    /// By how much the colours of `radiance`, clamped to 0–1, are off in the root mean square, told from
+    /// two independent halves of the samples. No error below it can be claimed.
+    pub noise: f64,
+    /// Which pixels show what.
+    pub masks: Masks,
+}
+
+/// Pixels of which something is known, in the order of the picture's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Masks {
+    /// Samples see what lies apart: two instances, background, or across a silhouette or a crease.
+    pub edges: Vec<bool>,
+    /// Some samples see a light that others do not: at the edge of a hard shadow, within a soft one.
+    pub penumbrae: Vec<bool>,
+    /// What is seen is read from a map, or from a picture of the sky.
+    pub textured: Vec<bool>,
+}
+
+/// Pixels of one task: a few milliseconds at some hundred samples.
+const TASK: usize = 8;
+
+impl Reference {
+    /// Draws `subject`. `progress` is told the share that is done, from several threads. The same machine
+    /// gives the same numbers for any number of them.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn draw(
+        subject: &Subject,
+        effort: Effort,
+        progress: &(dyn Fn(f64) + Sync),
+        work: &Work,
+    ) -> Result<Self, Cancelled> {
+        let studio = studio(subject);
+        let [width, height] = subject.size;
+        let places: Vec<[u32; 2]> = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
+        let done = AtomicUsize::new(0);
+        let draw = |places: &[[u32; 2]]| -> Vec<Pixel> {
+            let pixels = places.iter().map(|&place| pixel::draw(&studio, place, effort)).collect();
+            let before = done.fetch_add(places.len(), Ordering::Relaxed);
+            progress(share(before + places.len(), width, height));
+            pixels
+        };
+        let tasks = places.chunks(TASK).collect();
+        let pixels = work.map(tasks, || (), |(), places| draw(places))?;
+        let pixels: Vec<Pixel> = pixels.into_iter().flatten().collect();
+        Ok(Self::of(subject, &pixels))
+    }
+
+    fn of(subject: &Subject, pixels: &[Pixel]) -> Self {
+        let radiance: Vec<[f64; 4]> = pixels.iter().map(|pixel| pixel.radiance).collect();
+        let squares: f64 = pixels.iter().map(|pixel| pixel.difference_squared).sum();
+        let mask = |of: fn(&Pixel) -> bool| pixels.iter().map(of).collect();
+        Self {
+            size: subject.size,
+            color: post::apply(&subject.scene.post, subject.size, &radiance),
+            samples: pixels.iter().map(|pixel| pixel.samples).collect(),
+            // The mean of two halves is off by half of what they differ.
+            noise: (squares / float(pixels.len())).sqrt() / 2.0,
+            masks: Masks {
+                edges: mask(|pixel| pixel.is_edge),
+                penumbrae: mask(|pixel| pixel.is_penumbra),
+                textured: mask(|pixel| pixel.is_textured),
+            },
+            radiance,
+        }
+    }
+}
+
+fn studio<'a>(subject: &'a Subject<'a>) -> Studio<'a> {
+    let scene = subject.scene;
+    Studio {
+        subject,
+        world: World::new(scene, subject.t),
+        lighting: Lighting {
+            ambient: scene.ambient.as_dvec3(),
+            lamps: Lamp::all(scene),
+            shading: subject.shading.or(scene.render.shading),
+        },
+        camera: Camera::new(&subject.camera, subject.size),
+    }
+}
+
+fn share(done: usize, width: u32, height: u32) -> f64 {
+    float(done) / (f64::from(width) * f64::from(height))
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a picture has at most 2²⁶ pixels")]
+fn float(count: usize) -> f64 {
+    count as f64
+}
+
+#[cfg(test)]
+mod tests;
