@@ -1,12 +1,15 @@
-//! `rasterd [serve]`, `rasterd render`, `rasterd healthcheck`.
+//! `rasterd [serve]`, `rasterd render`, `rasterd report`, `rasterd healthcheck`.
 //!
 //! Exit code 0 when all went well, 1 for bad input or a failed check, 2 for wrong usage (clap's own).
 
 mod beside;
 mod destination;
+mod frame_flags;
 mod healthcheck;
 mod render;
+mod report;
 mod serve;
+mod source;
 
 use clap::{Parser, Subcommand};
 use rasterd::settings::Settings;
@@ -36,6 +39,8 @@ enum Command {
     Serve(Box<Settings>),
     /// Draw a model or a scene document into a picture, a turntable or an archive of outputs
     Render(Box<render::Render>),
+    /// Measure error against run time of a model or a scene document
+    Report(Box<report::Report>),
     /// Ask a server on the listening address whether it lives
     Healthcheck(healthcheck::Healthcheck),
 }
@@ -47,6 +52,7 @@ pub fn run() -> ExitCode {
         None => serve::run(cli.settings),
         Some(Command::Serve(settings)) => serve::run(*settings),
         Some(Command::Render(render)) => render.run(),
+        Some(Command::Report(report)) => report.run(),
         Some(Command::Healthcheck(check)) => check.run(),
     };
     match result {

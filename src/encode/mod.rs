@@ -11,7 +11,7 @@ mod frame_json;
 mod gif;
 mod hdr;
 mod jpeg;
-mod over_white;
+pub(crate) mod over_white;
 mod png;
 mod webp;
 mod zip;

@@ -6,7 +6,7 @@ use crate::math::simd::*;
 
 /// Lays straight-alpha sRGB pixels over white, mixing in linear light: `c·α + 1 − α`. What is opaque
 /// keeps its codes.
-pub(super) fn over_white(level: Level, pixels: &[[u8; 4]]) -> Vec<[u8; 4]> {
+pub(crate) fn over_white(level: Level, pixels: &[[u8; 4]]) -> Vec<[u8; 4]> {
     let mut over = pixels.to_vec();
     dispatch!(level, simd => over_white_kernel(simd, &SRGB_DECODE, &mut over));
     over

@@ -1,5 +1,6 @@
 //! `/scenes/{id}/frame.zip`: several pictures of one frame, and what a program needs to know about them.
 
+use super::frames::Call;
 use super::problem::Problem;
 use super::query::Pairs;
 use super::{App, accept, frames, openapi};
@@ -32,7 +33,8 @@ pub(super) async fn read(
     accept::check(&headers, ZIP)?;
     let (archive, request) = pairs.read(query)?;
     let scene = app.entry(&id)?.scene;
-    frames::draw(&app, &id, scene, request, archive, &headers).await
+    let call = Call { name: &id, pairs: &pairs, headers: &headers };
+    frames::draw(&app, &call, scene, request, archive).await
 }
 
 /// Draw several outputs of a frame of a changed scene
@@ -57,7 +59,8 @@ pub(super) async fn of_changed(
     let (archive, frame) = pairs.read(query)?;
     let headers = request.headers().clone();
     let scene = frames::changed(&app, &id, request).await?;
-    frames::draw(&app, &id, scene, frame, archive, &headers).await
+    let call = Call { name: &id, pairs: &pairs, headers: &headers };
+    frames::draw(&app, &call, scene, frame, archive).await
 }
 
 fn query(query: &mut crate::plan::request::Query) -> (Product, FrameRequest) {

@@ -6,15 +6,17 @@ use super::query::Pairs;
 use super::{App, accept, blocking, body, etag, openapi};
 use crate::jobs::{Format, Product, Rendered};
 use crate::plan::FrameRequest;
+use crate::report::choose::Choice;
 use crate::scene::Scene;
 use axum::extract::{Path, Request, State};
-use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG};
+use axum::http::header::{CACHE_CONTROL, CONTENT_LOCATION, CONTENT_TYPE, ETAG};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use std::fmt::Display;
 use std::sync::Arc;
 
 const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
+const RENDER_SETTINGS: HeaderName = HeaderName::from_static("render-settings");
 const RENDER_STATS: HeaderName = HeaderName::from_static("render-stats");
 const RENDER_DEPTH_RANGE: HeaderName = HeaderName::from_static("render-depth-range");
 
@@ -40,7 +42,7 @@ pub(super) async fn read(
     accept::check(&headers, format.content_type())?;
     let request = pairs.frame()?;
     let scene = app.entry(&id)?.scene;
-    draw(&app, &id, scene, request, format, &headers).await
+    draw(&app, &Call { name: &id, pairs: &pairs, headers: &headers }, scene, request, format).await
 }
 
 /// Draw a frame of a changed scene
@@ -66,7 +68,7 @@ pub(super) async fn of_changed(
     let frame = pairs.frame()?;
     let headers = request.headers().clone();
     let scene = changed(&app, &id, request).await?;
-    draw(&app, &id, scene, frame, format, &headers).await
+    draw(&app, &Call { name: &id, pairs: &pairs, headers: &headers }, scene, frame, format).await
 }
 
 /// The format that a path ends with, else a 406 that names all.
@@ -88,24 +90,65 @@ pub(super) async fn changed(app: &App, id: &str, request: Request) -> Result<Arc
     blocking::compile(&app.renderer, move || entry.patched(&patch, &limits)).await
 }
 
-/// Draws and replies, or says that the client has the picture already; `name` is the scene's, for the
-/// log.
+/// A call for a picture.
+pub(super) struct Call<'a> {
+    /// The scene's name, for the log.
+    pub(super) name: &'a str,
+    /// Its path and query.
+    pub(super) pairs: &'a Pairs,
+    /// What else it says.
+    pub(super) headers: &'a HeaderMap,
+}
+
+/// Draws and replies, or says that the client has the picture already. A budget is settled first.
 pub(super) async fn draw(
     app: &App,
-    name: &str,
+    call: &Call<'_>,
     scene: Arc<Scene>,
     request: FrameRequest,
     product: impl Into<Product>,
-    headers: &HeaderMap,
 ) -> Result<Response, Problem> {
     let product = product.into();
-    if etag::is_conditional(headers) {
+    let (request, choice) = app.renderer.to_budget(&scene, request).await?;
+    let mut response = picture(app, call, scene, request, product).await?;
+    if let Some(choice) = choice {
+        add_settings(&mut response, &choice, call.pairs);
+    }
+    Ok(response)
+}
+
+async fn picture(
+    app: &App,
+    call: &Call<'_>,
+    scene: Arc<Scene>,
+    request: FrameRequest,
+    product: Product,
+) -> Result<Response, Problem> {
+    if etag::is_conditional(call.headers) {
         let tag = app.renderer.etag(Arc::clone(&scene), request.clone(), product.clone()).await?;
-        if etag::none_match_names(headers, &tag) {
+        if etag::none_match_names(call.headers, &tag) {
             return Ok((StatusCode::NOT_MODIFIED, [NO_CACHE], [(ETAG, tag)]).into_response());
         }
     }
-    Ok(reply(name, app.renderer.render(scene, request, product).await?))
+    Ok(reply(call.name, app.renderer.render(scene, request, product).await?))
+}
+
+/// Says which settings a budget was settled into, and what is to be expected of them.
+pub(super) fn add_settings(response: &mut Response, choice: &Choice, pairs: &Pairs) {
+    let parameters = choice.setting.parameters();
+    let expected = [
+        ("error", format!("{:.6}", choice.error)),
+        ("ms", format!("{:.3}", choice.ms)),
+        ("source", choice.source.word().to_owned()),
+    ];
+    // A dictionary of numbers and tokens (RFC 8941, section 3.2).
+    let settings = listed(parameters.iter().chain(&expected).map(|(name, value)| format!("{name}={value}")));
+    let values = [(RENDER_SETTINGS, settings), (CONTENT_LOCATION, pairs.with_settings(&parameters))];
+    for (name, value) in values {
+        if let Ok(value) = HeaderValue::from_str(&value) {
+            response.headers_mut().insert(name, value);
+        }
+    }
 }
 
 fn reply(name: &str, rendered: Rendered) -> Response {

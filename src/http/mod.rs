@@ -26,6 +26,7 @@ mod plan;
 mod problem;
 mod query;
 mod render_once;
+mod reports;
 mod reticent;
 mod scenes;
 pub mod serve;
@@ -36,7 +37,7 @@ mod turntables;
 pub use body::{json, sniffed};
 pub use problem::Problem;
 
-use crate::jobs::{Renderer, Streams};
+use crate::jobs::{Renderer, Reports, Streams};
 use crate::scene::store::{Entry, Store};
 use crate::settings::Settings;
 use axum::Router;
@@ -58,6 +59,8 @@ pub struct App {
     pub renderer: Renderer,
     /// Draw again and again.
     pub streams: Streams,
+    /// Measure error against run time.
+    pub reports: Reports,
     /// As the server was started.
     pub settings: Arc<Settings>,
     ready: Arc<AtomicBool>,
@@ -70,6 +73,7 @@ impl App {
         Self {
             store: Arc::new(Store::new(settings.limits())),
             streams: Streams::new(renderer.clone()),
+            reports: Reports::new(renderer.clone()),
             renderer,
             settings: Arc::new(settings),
             ready: Arc::new(AtomicBool::new(true)),
@@ -80,6 +84,7 @@ impl App {
     pub fn close(&self) {
         self.ready.store(false, Ordering::Relaxed);
         self.streams.close();
+        self.reports.close();
         self.renderer.queue().close();
     }
 
@@ -110,6 +115,7 @@ pub fn router(app: App) -> Router {
         .routes(routes!(streams::events))
         .routes(routes!(pick::read))
         .routes(routes!(plan::read))
+        .routes(routes!(reports::read))
         .routes(routes!(instances::list))
         .routes(routes!(render_once::draw))
         .routes(routes!(gallery::list))

@@ -146,6 +146,7 @@ pub(super) async fn read(
 ) -> Result<Json<FramePlan>, Problem> {
     let request = pairs.frame()?;
     let scene = app.entry(&id)?.scene;
+    let (request, _) = app.renderer.to_budget(&scene, request).await?;
     let plan = app.renderer.plan(scene, request).await?;
     Ok(Json(FramePlan::of(&plan)))
 }

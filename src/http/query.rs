@@ -2,23 +2,39 @@
 
 use super::problem::Problem;
 use crate::plan::FrameRequest;
-use crate::plan::request::Query;
+use crate::plan::request::{Budget, Query};
 use crate::scene::gallery::{self, Piece};
 use crate::scene::{ModelOptions, UpAxis};
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 
-/// The decoded pairs of the query string.
+/// The decoded pairs of the query string, and the path in front of it.
 #[derive(Debug)]
-pub(super) struct Pairs(Vec<(String, String)>);
+pub(super) struct Pairs {
+    path: String,
+    pairs: Vec<(String, String)>,
+}
 
 impl Pairs {
     /// Reads what `read` knows; anything else, and all that is wrong with it, is a 422.
     pub(super) fn read<T>(&self, read: impl FnOnce(&mut Query) -> T) -> Result<T, Problem> {
-        let mut query = Query::new(self.0.iter().map(|(name, value)| (name.as_str(), value.as_str())));
+        let mut query = Query::new(self.pairs.iter().map(|(name, value)| (name.as_str(), value.as_str())));
         let value = read(&mut query);
         query.finish().map_err(|faults| Problem::query(&faults))?;
         Ok(value)
+    }
+
+    /// The same call with settings in place of a budget: path and query.
+    pub(super) fn with_settings(&self, settings: &[(&'static str, String)]) -> String {
+        let is_own = |name: &str| {
+            !Budget::PARAMETERS.contains(&name) && !settings.iter().any(|(setting, _)| *setting == name)
+        };
+        let own = self.pairs.iter().filter(|(name, _)| is_own(name));
+        let own = own.map(|(name, value)| (name.as_str(), value.as_str()));
+        let settings = settings.iter().map(|(name, value)| (*name, value.as_str()));
+        let query =
+            form_urlencoded::Serializer::new(String::new()).extend_pairs(own.chain(settings)).finish();
+        format!("{}?{query}", self.path)
     }
 
     /// The frame query and nothing else.
@@ -32,7 +48,7 @@ impl<S: Sync> FromRequestParts<S> for Pairs {
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
         axum::extract::Query::try_from_uri(&parts.uri)
-            .map(|axum::extract::Query(pairs)| Self(pairs))
+            .map(|axum::extract::Query(pairs)| Self { path: parts.uri.path().to_owned(), pairs })
             .map_err(|_| Problem::bad_request("the query string does not decode"))
     }
 }

@@ -1,5 +1,6 @@
 //! `/render.png`, `.jpg`, …: a model or a scene in, its picture out, nothing kept.
 
+use super::frames::Call;
 use super::problem::Problem;
 use super::query::{Pairs, source};
 use super::{App, accept, blocking, body, frames, openapi};
@@ -33,5 +34,6 @@ pub(super) async fn draw(
     let new = body::scene(request, app.body_bounds(), source).await?;
     let limits = *app.renderer.limits();
     let scene = blocking::compile(&app.renderer, move || new.compile(&limits)).await?;
-    frames::draw(&app, "-", Arc::new(scene), frame, format, &headers).await
+    let call = Call { name: "-", pairs: &pairs, headers: &headers };
+    frames::draw(&app, &call, Arc::new(scene), frame, format).await
 }

@@ -6,9 +6,11 @@
 use super::link::Link;
 use super::problem::Problem;
 use super::query::Pairs;
-use super::{App, accept, openapi};
+use super::{App, accept, frames, openapi};
 use crate::jobs::{JobError, News, Picture, StreamRequest, Watcher};
 use crate::plan::request::Query;
+use crate::report::Progress;
+use crate::report::choose::Choice;
 use axum::Extension;
 use axum::body::{Body, Bytes};
 use axum::extract::{Path, State};
@@ -19,6 +21,7 @@ use futures_util::{StreamExt, stream};
 use serde_json::{Map, Value, json};
 use std::convert::Infallible;
 use std::sync::Arc;
+use tokio::sync::watch::Receiver;
 
 /// No quotes and no dashes: not every client reads those.
 const MULTIPART: &str = "multipart/x-mixed-replace; boundary=frame";
@@ -56,6 +59,7 @@ pub(super) async fn watch(
     let (framing, request) = pairs.read(|query| (Framing::read(query), StreamRequest::read(query)))?;
     let framing = framing.unwrap_or(if names_images { Framing::Advance } else { Framing::Length });
 
+    let (request, choice) = to_budget(&app, &id, request).await?;
     let versions = app.store.watch(&id).ok_or_else(|| Problem::no_scene(&id))?;
     let (watcher, first) = begin(&app, &id, app.streams.watch(versions, request)).await?;
     let mut before = None;
@@ -66,17 +70,22 @@ pub(super) async fn watch(
     };
     let mut opening = vec![Bytes::from_static(framing.opening())];
     opening.extend(send(&watcher, &first));
-    let say = move |watcher: &Watcher, News { picture, .. }: News| {
-        picture.map_or_else(Vec::new, |picture| send(watcher, &picture))
+    let say = move |watcher: &Watcher, word: Word| match word {
+        Word::News(News { picture: Some(picture), .. }) => send(watcher, &picture),
+        Word::News(_) | Word::Report(_) => Vec::new(),
     };
-    Ok(reply(MULTIPART, body(watcher, link, opening, say)))
+    let mut response = reply(MULTIPART, body(watcher, link, opening, None, say));
+    if let Some(choice) = choice {
+        frames::add_settings(&mut response, &choice, &pairs);
+    }
+    Ok(response)
 }
 
 /// What the stream of the same query shows
 ///
 /// Server-sent events. `frame`: one for each picture that the stream shows, repeated ones too, with what it
 /// cost and how many pictures the last second saw. `problem`: a picture could not be made; others will be
-/// tried. A listener keeps the stream alive like one who watches it.
+/// tried. `report`: how far a report on the scene is, `{"stage", "done"}`. A listener keeps the stream alive like one who watches it.
 #[utoipa::path(
     get, path = "/scenes/{id}/events", tag = "streams",
     params(("id" = String, Path, description = "The scene"), openapi::StreamQuery, openapi::FrameQuery),
@@ -90,15 +99,56 @@ pub(super) async fn events(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     accept::check(&headers, EVENT_STREAM)?;
-    let request = pairs.read(StreamRequest::read)?;
+    let (request, _) = to_budget(&app, &id, pairs.read(StreamRequest::read)?).await?;
     let versions = app.store.watch(&id).ok_or_else(|| Problem::no_scene(&id))?;
     let (watcher, first) = begin(&app, &id, app.streams.listen(versions, request)).await?;
     let opening = vec![frame_event(&watcher, &first)];
-    let say = |watcher: &Watcher, news: News| match news {
-        News { failure: Some(failure), .. } => vec![event("problem", &Problem::from(failure).to_json(None))],
-        News { picture, .. } => picture.iter().map(|picture| frame_event(watcher, picture)).collect(),
+    let say = move |watcher: &Watcher, word: Word| match word {
+        Word::News(News { failure: Some(failure), .. }) => {
+            vec![event("problem", &Problem::from(failure).to_json(None))]
+        }
+        Word::News(News { picture, .. }) => {
+            picture.iter().map(|picture| frame_event(watcher, picture)).collect()
+        }
+        Word::Report((name, progress)) if name == id => vec![event("report", &json!(progress))],
+        Word::Report(_) => Vec::new(),
     };
-    Ok(reply(EVENT_STREAM, body(watcher, link, opening, say)))
+    Ok(reply(EVENT_STREAM, body(watcher, link, opening, Some(app.reports.news()), say)))
+}
+
+/// The stream with the settings that its budget buys for the scene as it is now.
+async fn to_budget(
+    app: &App,
+    id: &str,
+    request: StreamRequest,
+) -> Result<(StreamRequest, Option<Choice>), Problem> {
+    let scene = app.entry(id)?.scene;
+    let (frame, choice) = app.renderer.to_budget(&scene, request.frame().clone()).await?;
+    Ok((request.with_frame(frame), choice))
+}
+
+/// How far the report under way is, with the name of its scene.
+type Measuring = (String, Progress);
+
+/// What an endless body can tell of.
+enum Word {
+    News(News),
+    Report(Measuring),
+}
+
+/// Waits for what is told next; `None` when the stream has ended.
+async fn next_word(watcher: &mut Watcher, reports: Option<&mut Receiver<Option<Measuring>>>) -> Option<Word> {
+    let report = async {
+        let Some(reports) = reports else { return std::future::pending().await };
+        match reports.changed().await {
+            Ok(()) => reports.borrow_and_update().clone(),
+            Err(_) => std::future::pending().await,
+        }
+    };
+    tokio::select! {
+        news = watcher.next() => news.map(Word::News),
+        Some(report) = report => Some(Word::Report(report)),
+    }
 }
 
 /// How the pictures lie one behind the other.
@@ -150,22 +200,29 @@ async fn begin(app: &App, id: &str, mut watcher: Watcher) -> Result<(Watcher, Ar
     }
 }
 
-/// `opening`, and then what `say` makes of the news, until the stream ends.
-fn body<S>(watcher: Watcher, link: Option<Extension<Link>>, opening: Vec<Bytes>, say: S) -> Body
+/// `opening`, and then what `say` makes of the news, of reports too where it is told of them, until the stream ends.
+fn body<S>(
+    watcher: Watcher,
+    link: Option<Extension<Link>>,
+    opening: Vec<Bytes>,
+    reports: Option<Receiver<Option<Measuring>>>,
+    say: S,
+) -> Body
 where
-    S: FnMut(&Watcher, News) -> Vec<Bytes> + Send + 'static,
+    S: FnMut(&Watcher, Word) -> Vec<Bytes> + Send + 'static,
 {
     let drained = link.map(|Extension(link)| link.begin_live());
-    let rest = stream::unfold((watcher, drained, say), |(mut watcher, mut drained, mut say)| async move {
+    let state = (watcher, drained, reports, say);
+    let rest = stream::unfold(state, |(mut watcher, mut drained, mut reports, mut say)| async move {
         if let Some(drained) = &mut drained {
             tokio::select! {
                 () = drained.wait() => {}
                 () = watcher.ended() => return None,
             }
         }
-        let news = watcher.next().await?;
-        let said = say(&watcher, news);
-        Some((said, (watcher, drained, say)))
+        let word = next_word(&mut watcher, reports.as_mut()).await?;
+        let said = say(&watcher, word);
+        Some((said, (watcher, drained, reports, say)))
     });
     let all = stream::once(std::future::ready(opening)).chain(rest);
     Body::from_stream(all.flat_map(|said| stream::iter(said.into_iter().map(Ok::<_, Infallible>))))

@@ -1,5 +1,6 @@
 //! `/scenes/{id}/turntable.gif`, `.png`: once around the target.
 
+use super::frames::Call;
 use super::problem::Problem;
 use super::query::Pairs;
 use super::{App, accept, frames, openapi};
@@ -35,5 +36,6 @@ pub(super) async fn read(
     let (turntable, request) =
         pairs.read(|query| (Product::read_turntable(query, format), FrameRequest::read(query)))?;
     let scene = app.entry(&id)?.scene;
-    frames::draw(&app, &id, scene, request, turntable, &headers).await
+    let call = Call { name: &id, pairs: &pairs, headers: &headers };
+    frames::draw(&app, &call, scene, request, turntable).await
 }

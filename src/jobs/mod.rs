@@ -12,6 +12,7 @@ mod draw;
 mod error;
 mod product;
 mod queue;
+mod report;
 mod shift;
 
 pub use crate::encode::{Animation, Format};
@@ -21,6 +22,7 @@ pub use draw::Draw;
 pub use error::JobError;
 pub use product::{Product, Rendered};
 pub use queue::{Queue, QueueDepth};
+pub use report::Reports;
 
 use crate::encode;
 use crate::limits::Limits;
@@ -35,6 +37,7 @@ use bytes::Bytes;
 use draw::Drawn;
 use fearless_simd::Level;
 use queue::Kind;
+use report::Fronts;
 use shift::{Clock, Shift};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -74,6 +77,7 @@ struct Engine {
     limits: Limits,
     draw: Box<Draw>,
     metrics: Metrics,
+    fronts: Fronts,
 }
 
 impl Renderer {
@@ -309,6 +313,7 @@ impl Engine {
             limits,
             draw,
             metrics: Metrics::default(),
+            fronts: Fronts::default(),
         })
     }
 

@@ -1,9 +1,11 @@
 //! What a client asks of one frame, as typed overrides of the scene's own settings.
 
+mod budget;
 mod knobs;
 mod parse;
 mod query;
 
+pub use budget::{Budget, Preset};
 pub use knobs::Knobs;
 pub use query::{Query, QueryFault};
 
@@ -24,6 +26,8 @@ pub struct FrameRequest {
     pub samples: Option<u32>,
     /// What else trades error for run time.
     pub knobs: Knobs,
+    /// What it may cost or err by: nothing to a plan, which takes settled requests.
+    pub budget: Option<Budget>,
     /// Seconds; a single frame's default is 0.
     pub t: f64,
     /// JPEG quality, 1–100.

@@ -41,6 +41,7 @@ pub(super) fn of(entry: &Entry) -> Value {
             "stream": format!("{path}/stream.mjpg"),
             "plan": format!("{path}/plan"),
             "instances": format!("{path}/instances"),
+            "report": format!("{path}/report.html"),
         },
     })
 }

@@ -14,6 +14,12 @@ impl Simd {
         Self(Level::new())
     }
 
+    /// A level that kernels were given.
+    #[must_use]
+    pub fn of(level: Level) -> Self {
+        Self(level)
+    }
+
     /// The level as the kernels take it.
     #[must_use]
     pub fn level(self) -> Level {

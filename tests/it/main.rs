@@ -2,6 +2,7 @@
 
 mod archive;
 mod box_on_floor;
+mod budgets;
 mod client;
 mod closed_form;
 mod command;
@@ -21,6 +22,7 @@ mod pictures;
 mod plan;
 mod random;
 mod render_once;
+mod reports;
 mod scenes;
 mod service;
 mod socket;

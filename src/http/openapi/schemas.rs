@@ -33,14 +33,16 @@ fn takes_gallery(operation: &Value) -> bool {
 fn of_parameter(name: &str) -> Option<Value> {
     match name {
         "samples" => Some(json!({ "type": "integer", "enum": [1, 2, 4, 8, 16] })),
-        "output" | "shading" | "texture_filter" => Some(words(&FrameRequest::words(name))),
+        "output" | "shading" | "texture_filter" | "preset" => Some(words(&FrameRequest::words(name))),
         "outputs" => Some(listed(&Output::all())),
         "up" => Some(words(&["y", "z"])),
         "from" => {
             let names: Vec<&str> = gallery::pieces().iter().map(|piece| piece.name).collect();
             Some(words(&names))
         }
-        "near" | "far" | "ortho" => Some(json!({ "type": "number", "exclusiveMinimum": 0 })),
+        "near" | "far" | "ortho" | "max_ms" | "max_error" => {
+            Some(json!({ "type": "number", "exclusiveMinimum": 0 }))
+        }
         "eye" | "target" => Some(numbers("{2}")),
         "orbit" => Some(numbers("{1,2}")),
         "background" => Some(json!({ "type": "string", "minLength": 1 })),

@@ -33,6 +33,18 @@ impl StreamRequest {
         Self { frame, is_frozen, fps }
     }
 
+    /// What each frame asks for, but for its time.
+    #[must_use]
+    pub fn frame(&self) -> &FrameRequest {
+        &self.frame
+    }
+
+    /// The same stream of frames that ask for `frame`.
+    #[must_use]
+    pub fn with_frame(self, frame: FrameRequest) -> Self {
+        Self { frame, ..self }
+    }
+
     /// From the start of one frame to that of the next, at least.
     pub(super) fn period(&self) -> Duration {
         Duration::from_secs_f64(self.fps.recip())

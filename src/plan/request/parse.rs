@@ -1,7 +1,9 @@
 //! The frame query: text in, [`FrameRequest`] out, or every fault at once.
 
 use super::query::{in_range, integer, not_one_of, numbers, positive, quoted};
-use super::{BackgroundRequest, Elide, FrameRequest, Knobs, Orbit, Output, Query, QueryFault};
+use super::{
+    BackgroundRequest, Budget, Elide, FrameRequest, Knobs, Orbit, Output, Preset, Query, QueryFault,
+};
 use crate::limits::Limits;
 use crate::math::colour::linear_from_srgb8;
 use crate::model::{Filter, Shading};
@@ -38,19 +40,15 @@ fn outputs() -> impl Iterator<Item = (&'static str, Output)> {
     OUTPUTS.into_iter().chain(STAGES)
 }
 
-const NOT_AVAILABLE: &str = "is not available in this version";
-
 impl FrameRequest {
-    /// Parameters of the contract that this version knows but does not serve.
-    pub const NOT_YET: [&str; 3] = ["preset", "max_ms", "max_error"];
-
-    /// The words that `shading`, `output` and `texture_filter` take; none for another parameter.
+    /// The words that `shading`, `output`, `texture_filter` and `preset` take; none for another parameter.
     #[must_use]
     pub fn words(parameter: &str) -> Vec<&'static str> {
         match parameter {
             "shading" => SHADINGS.iter().map(|(word, _)| *word).collect(),
             "output" => outputs().map(|(word, _)| word).collect(),
             "texture_filter" => FILTERS.iter().map(|(word, _)| *word).collect(),
+            "preset" => Preset::WORDS.iter().map(|(word, _)| *word).collect(),
             _ => Vec::new(),
         }
     }
@@ -73,6 +71,7 @@ impl FrameRequest {
             height: query.parsed("height", side),
             samples: query.one_of("samples", &[("1", 1), ("2", 2), ("4", 4), ("8", 8), ("16", 16)]),
             knobs: Knobs::read(query),
+            budget: Budget::read(query),
             t: query.number("t").unwrap_or(0.0),
             quality: query.integer_in("quality", 1..=100).and_then(|quality| u8::try_from(quality).ok()),
             output: query.parsed("output", output).unwrap_or_default(),
@@ -89,9 +88,6 @@ impl FrameRequest {
             elide: query.parsed("elide", str::parse),
         };
         request.note_contradictions(query);
-        for name in Self::NOT_YET {
-            query.parsed(name, |_| Err::<(), _>(NOT_AVAILABLE.to_owned()));
-        }
         request
     }
 
@@ -263,6 +259,7 @@ mod tests {
             ("filter_taps", "11"),
             ("texture_filter", "bilinear"),
             ("render_scale", "0.5"),
+            ("max_ms", "16.5"),
             ("t", "-1.5"),
             ("quality", "90"),
             ("output", "depth"),
@@ -287,6 +284,7 @@ mod tests {
                 texture_filter: Some(Filter::Bilinear),
                 render_scale: Some(0.5),
             },
+            budget: Some(Budget::MaxMs(16.5)),
             t: -1.5,
             quality: Some(90),
             output: Output::Depth,
@@ -320,11 +318,11 @@ mod tests {
     }
 
     #[test]
-    fn what_this_version_lacks_says_so() {
-        for pair in [("preset", "draft"), ("max_ms", "5"), ("max_error", "1")] {
-            let faults = faults(&[pair]);
-            assert!(faults.len() == 1 && faults[0].ends_with(NOT_AVAILABLE), "{faults:?}");
-        }
+    fn one_budget_is_enough() {
+        let faults = faults(&[("preset", "draft"), ("max_error", "0.1")]);
+        assert_eq!(faults, ["max_error: cannot be given together with preset: both choose the settings"]);
+        let request = FrameRequest::parse([("preset", "high"), ("samples", "2")]).expect("a good query");
+        assert_eq!(request.budget, Some(Budget::Preset(Preset::High)));
     }
 
     #[test]

@@ -64,6 +64,17 @@ pub struct Effort {
     pub most: u32,
     /// How much its colour, clamped to 0–1, may be off before that is more samples' worth.
     pub noise: f64,
+    /// Where the samples lie.
+    pub aim: Aim,
+}
+
+/// Where the samples of a pixel lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aim {
+    /// All over its square.
+    Pixel,
+    /// All at its centre: what differs between them is where in a light they look.
+    Centre,
 }
 
 /// A picture without approximations. Rows run from the top.

@@ -6,7 +6,7 @@ use super::camera::Camera;
 use super::sequence::Sequence;
 use super::shading::{Lighting, View, reads_maps};
 use super::world::{Layer, World};
-use super::{Effort, Subject};
+use super::{Aim, Effort, Subject};
 use glam::{DVec3, DVec4};
 
 /// What all pixels are drawn with.
@@ -51,6 +51,7 @@ struct Sum {
 struct Drawing<'a> {
     studio: &'a Studio<'a>,
     place: [u32; 2],
+    aim: Aim,
     /// The two halves of its samples are independent of each other.
     sequences: [Sequence; 2],
     halves: [Sum; 2],
@@ -65,7 +66,7 @@ struct Drawing<'a> {
 
 /// Draws a pixel.
 pub fn draw(studio: &Studio, place: [u32; 2], effort: Effort) -> Pixel {
-    let mut drawing = Drawing::new(studio, place);
+    let mut drawing = Drawing::new(studio, place, effort.aim);
     // Half of them for each half of the samples.
     let most = effort.most.max(effort.base).max(2) / 2;
     let mut count = (effort.base / 2).max(1);
@@ -79,10 +80,11 @@ pub fn draw(studio: &Studio, place: [u32; 2], effort: Effort) -> Pixel {
 }
 
 impl<'a> Drawing<'a> {
-    fn new(studio: &'a Studio<'a>, place: [u32; 2]) -> Self {
+    fn new(studio: &'a Studio<'a>, place: [u32; 2], aim: Aim) -> Self {
         Self {
             studio,
             place,
+            aim,
             sequences: [Sequence::new(place, 0), Sequence::new(place, 1)],
             halves: [Sum::default(); 2],
             layers: Vec::new(),
@@ -105,7 +107,10 @@ impl<'a> Drawing<'a> {
 
     /// Premultiplied colour of one sample.
     fn look(&mut self, half: usize, number: u32) -> DVec4 {
-        let [x, y] = self.sequences[half].point(number, 0);
+        let [x, y] = match self.aim {
+            Aim::Pixel => self.sequences[half].point(number, 0),
+            Aim::Centre => [0.5; 2],
+        };
         let ray = self.studio.camera.ray([f64::from(self.place[0]) + x, f64::from(self.place[1]) + y]);
         let mut layers = std::mem::take(&mut self.layers);
         self.studio.world.see(&ray, &mut layers);

@@ -25,7 +25,7 @@ fn draw_on(threads: usize, scene: &Scene, size: [u32; 2], samples: u32) -> Refer
     let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
     let camera = framing::resolve(scene, &FrameRequest::default(), size[0], size[1]).expect("a camera");
     let subject = Subject { scene, camera, size, t: 0.0, background: &scene.background, shading: None };
-    let effort = Effort { base: samples, most: samples, noise: 0.0 };
+    let effort = Effort { base: samples, most: samples, noise: 0.0, aim: Aim::Pixel };
     Reference::draw(&subject, effort, &|_| (), &work).expect("nobody cancels")
 }
 
@@ -361,7 +361,7 @@ fn samples_go_where_they_matter() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
     let (cancel, most) = (AtomicBool::new(false), std::sync::Mutex::new(0.0_f64));
     let work = Work { pool: &pool, cancel: &cancel, level: Level::new() };
-    let effort = Effort { base: 16, most: 256, noise: 1e-3 };
+    let effort = Effort { base: 16, most: 256, noise: 1e-3, aim: Aim::Pixel };
     let progress = |share: f64| {
         let mut most = most.lock().expect("nobody panics");
         *most = most.max(share);

@@ -1,0 +1,163 @@
+//! A picture to a budget: the setting that a front has for it.
+
+use super::cost;
+use super::setting::{Knob, Setting};
+use super::sweep::{self, Family};
+use super::{Point, Report};
+use crate::plan::request::{Budget, Preset};
+use crate::plan::{FrameRequest, Knobs, Plan};
+
+/// What was chosen, and what is to be expected of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// The setting.
+    pub setting: Setting,
+    /// Root mean square error of linear light in 0–1.
+    pub error: f64,
+    /// Milliseconds, encoding among them.
+    pub ms: f64,
+    /// What says so.
+    pub source: Source,
+}
+
+/// Where an expectation comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A report on the scene.
+    Measured,
+    /// What such scenes cost.
+    Model,
+}
+
+impl Source {
+    /// What a reply calls it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Model => "model",
+        }
+    }
+}
+
+/// The settings of a scene that no other beats, as a report has measured them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Front {
+    points: Vec<Measured>,
+    presets: Vec<(Preset, f64)>,
+    pixels: f64,
+}
+
+/// A setting of the front.
+#[derive(Clone, Debug, PartialEq)]
+struct Measured {
+    setting: Setting,
+    error: f64,
+    passes: Vec<(&'static str, f64)>,
+}
+
+/// Passes whose time does not grow with the picture.
+const OF_THE_SCENE: [&str; 3] = ["plan", "shadow", "geometry"];
+
+impl Front {
+    /// That of a report.
+    #[must_use]
+    pub fn of(report: &Report) -> Self {
+        let measured = |point: &Point| Measured {
+            setting: point.knobs,
+            error: point.err.clamped.rmse,
+            passes: point.passes.clone(),
+        };
+        let preset = |point: &Point| {
+            let presets = point.families.iter().filter_map(|family| match family {
+                Family::Preset(preset) => Some(*preset),
+                _ => None,
+            });
+            presets.map(|preset| (preset, point.err.clamped.rmse)).collect::<Vec<_>>()
+        };
+        Self {
+            points: report.points.iter().filter(|point| point.pareto).map(measured).collect(),
+            presets: report.points.iter().flat_map(preset).collect(),
+            pixels: f64::from(report.meta.width) * f64::from(report.meta.height),
+        }
+    }
+
+    /// What its settings promise for the picture of `plan`.
+    fn choices(&self, plan: &Plan) -> Vec<Choice> {
+        let ratio = f64::from(plan.size[0]) * f64::from(plan.size[1]) / self.pixels;
+        let growth = |pass: &str| if OF_THE_SCENE.contains(&pass) { 1.0 } else { ratio };
+        let choice = |point: &Measured| Choice {
+            setting: point.setting,
+            error: point.error,
+            ms: point.passes.iter().map(|(pass, ms)| ms * growth(pass)).sum(),
+            source: Source::Measured,
+        };
+        self.points.iter().map(choice).collect()
+    }
+}
+
+/// The setting that `budget` gets for the frame of `request`, which `plan` draws on `threads`: by the `front` of its
+/// scene, if that is measured. What the request sets itself stays.
+#[must_use]
+pub fn choose(
+    budget: Budget,
+    request: &FrameRequest,
+    plan: &Plan,
+    front: Option<&Front>,
+    threads: usize,
+) -> Choice {
+    // What was measured was without them.
+    let front = front.filter(|front| !sets_knobs(request) && !front.points.is_empty());
+    let choices = match front {
+        Some(front) => front.choices(plan),
+        None => modelled(plan, request, threads),
+    };
+    let within = |budget: f64, of: fn(&Choice) -> f64, best: fn(&Choice) -> f64| {
+        let fits = choices.iter().filter(|choice| of(choice) <= budget);
+        // Where nothing fits, what comes nearest to it.
+        fits.min_by(|a, b| best(a).total_cmp(&best(b)))
+            .or_else(|| choices.iter().min_by(|a, b| of(a).total_cmp(&of(b))))
+            .copied()
+    };
+    let chosen = match budget {
+        Budget::MaxMs(ms) => within(ms, |choice| choice.ms, |choice| choice.error),
+        Budget::MaxError(error) => within(error, |choice| choice.error, |choice| choice.ms),
+        Budget::Preset(preset) => {
+            let setting = kept(Setting::of_preset(preset, plan), request);
+            let known = front.and_then(|front| front.presets.iter().find(|(own, _)| *own == preset));
+            match known {
+                Some((_, error)) => within(*error, |choice| choice.error, |choice| choice.ms),
+                None => Some(cost::expected(setting, plan, threads)),
+            }
+        }
+    };
+    chosen.expect("there is always a setting")
+}
+
+/// Settings from little work to much, and what they should cost.
+fn modelled(plan: &Plan, request: &FrameRequest, threads: usize) -> Vec<Choice> {
+    let presets = Preset::WORDS.iter().map(|(_, preset)| Setting::of_preset(*preset, plan));
+    let knobs: Vec<Knob> = Knob::ALL.into_iter().filter(|knob| knob.check(plan).is_ok()).collect();
+    let settings = presets.chain(sweep::mixed(plan, &knobs));
+    settings.map(|setting| cost::expected(kept(setting, request), plan, threads)).collect()
+}
+
+/// Whether `request` sets any knob itself.
+fn sets_knobs(request: &FrameRequest) -> bool {
+    request.samples.is_some() || request.knobs != Knobs::default()
+}
+
+/// `setting`, but for what `request` sets itself.
+fn kept(setting: Setting, request: &FrameRequest) -> Setting {
+    let own = &request.knobs;
+    let pcss =
+        |[search, filter]: [u32; 2]| [own.search_taps.unwrap_or(search), own.filter_taps.unwrap_or(filter)];
+    Setting {
+        samples: request.samples.unwrap_or(setting.samples),
+        shadow_resolution: own.shadow_resolution.or(setting.shadow_resolution),
+        pcf_taps: own.pcf_taps.or(setting.pcf_taps),
+        pcss_taps: setting.pcss_taps.map(pcss),
+        texture_filter: own.texture_filter.or(setting.texture_filter),
+        render_scale: own.render_scale.unwrap_or(setting.render_scale),
+    }
+}

@@ -1,0 +1,219 @@
+//! One component of the error at a time: what a knob alone does, against the truth of what it drives.
+//!
+//! Coverage is judged on flat colours, by what many samples make of them. Shadows are judged at the pixels' centres,
+//! without textures and with one sample: there a shadow map is all that differs from a ray to the light.
+
+use super::Failed;
+use super::error::{Difference, Region, difference, premultiplied};
+use super::fit::{Fit, Law, Metric};
+use super::reference::{Aim, Effort, Reference};
+use super::setting::{Knob, Setting};
+use super::subject::{self, Subject};
+use crate::model::{Material, Shading};
+use crate::pipeline::Work;
+use crate::plan::request::Preset;
+use crate::plan::{Filter, FrameRequest, Plan};
+use crate::scene::Scene;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Taps at which a filter counts as converged: as many as a light may have.
+const CONVERGED_TAPS: u32 = 1024;
+
+/// Rays to a light, from the centre of each pixel in its penumbra.
+const LIGHT_RAYS: u32 = 256;
+
+/// Samples of a pixel at an edge.
+const EDGE_SAMPLES: u32 = 256;
+
+/// The laws that the error of a frame's components should follow, in the order of `knobs`.
+fn laws(plan: &Plan, knobs: &[Knob]) -> Vec<Law> {
+    let law = |knob, metric, region, window| Law { knob, metric, region, window };
+    let of = |knob: &Knob| match knob {
+        Knob::Samples => vec![law(*knob, Metric::Rmse, Region::Edges, Some([-0.85, -0.55]))],
+        // A soft shadow ends at what one layer of depth knows of its casters.
+        Knob::ShadowResolution if is_soft(plan) => vec![law(*knob, Metric::Mae, Region::All, None)],
+        Knob::ShadowResolution => vec![
+            law(*knob, Metric::Mae, Region::All, Some([0.9, 1.1])),
+            law(*knob, Metric::Rmse, Region::All, Some([0.45, 0.55])),
+        ],
+        Knob::PcfTaps => vec![law(*knob, Metric::Rmse, Region::All, Some([-0.9, -0.7]))],
+        Knob::PcssTaps => vec![law(*knob, Metric::Rmse, Region::All, None)],
+        Knob::RenderScale => vec![
+            law(*knob, Metric::Mae, Region::All, Some([0.85, 1.15])),
+            law(*knob, Metric::Rmse, Region::All, Some([0.4, 0.6])),
+        ],
+        Knob::TextureFilter => Vec::new(),
+    };
+    knobs.iter().flat_map(of).collect()
+}
+
+fn is_soft(plan: &Plan) -> bool {
+    plan.shadows.iter().any(|pass| matches!(pass.filter, Filter::Pcss(_)))
+}
+
+/// A frame that shows one component alone, and its truth.
+struct Judge {
+    subject: Subject,
+    truth: Reference,
+}
+
+/// Fits each law of the frame that `plan` draws of `subject` for which there is enough to see, until the time is up.
+///
+/// # Errors
+/// [`Failed`].
+pub fn fit(
+    subject: &Subject,
+    plan: &Plan,
+    knobs: &[Knob],
+    until: Instant,
+    work: &Work,
+) -> Result<Vec<Fit>, Failed> {
+    let mut judges = Judges { subject, plan, coverage: None, shadows: None };
+    let mut fits = Vec::new();
+    for group in laws(plan, knobs).chunk_by(|a, b| a.knob == b.knob) {
+        if Instant::now() >= until {
+            break;
+        }
+        let (errors, floor) = judges.errors(group[0].knob, work)?;
+        fits.extend(group.iter().filter_map(|law| {
+            let points: Vec<[f64; 2]> =
+                errors.iter().map(|(number, error)| [*number, measured(error, law)]).collect();
+            Fit::of(law, &points, floor)
+        }));
+    }
+    Ok(fits)
+}
+
+/// The judges of a frame's components, each made when it is first asked.
+struct Judges<'a> {
+    subject: &'a Subject,
+    plan: &'a Plan,
+    /// Of flat colours, by many samples.
+    coverage: Option<Judge>,
+    /// Of surfaces without textures, at the pixels' centres.
+    shadows: Option<Judge>,
+}
+
+impl Judges<'_> {
+    /// The error of the knob's component at each of its values, and the error of what it is judged by.
+    fn errors(&mut self, knob: Knob, work: &Work) -> Result<(Vec<(f64, Errors)>, f64), Failed> {
+        let best = Setting { render_scale: 1.0, ..Setting::of_preset(Preset::Reference, self.plan) };
+        let one = Setting { samples: 1, ..best };
+        match knob {
+            Knob::ShadowResolution | Knob::PcssTaps => {
+                let settings = knob.turned(one, self.plan);
+                self.shadows(&best, work)?.errors(knob, &settings, work)
+            }
+            Knob::PcfTaps => {
+                let subject =
+                    Subject { scene: without_textures(&self.subject.scene), ..self.subject.clone() };
+                against_converged(&subject, one, &knob.turned(one, self.plan), work)
+            }
+            // A picture that is drawn larger has more than one sample a pixel: another law.
+            Knob::RenderScale => {
+                let settings = knob.turned(one, self.plan);
+                let settings: Vec<Setting> = settings.into_iter().filter(|s| s.render_scale <= 1.0).collect();
+                self.coverage(&best, work)?.errors(knob, &settings, work)
+            }
+            Knob::Samples | Knob::TextureFilter => {
+                let settings = knob.turned(best, self.plan);
+                self.coverage(&best, work)?.errors(knob, &settings, work)
+            }
+        }
+    }
+
+    fn coverage(&mut self, best: &Setting, work: &Work) -> Result<&Judge, Failed> {
+        if self.coverage.is_none() {
+            let request = FrameRequest { shading: Some(Shading::Unlit), ..self.subject.request.clone() };
+            let scene = without_textures(&self.subject.scene);
+            let effort = Effort { base: 4, most: EDGE_SAMPLES, noise: 0.0, aim: Aim::Pixel };
+            let subject = Subject { scene, request, ..self.subject.clone() };
+            self.coverage = Some(Judge::new(subject, best, effort, work)?);
+        }
+        Ok(self.coverage.as_ref().expect("made above"))
+    }
+
+    fn shadows(&mut self, best: &Setting, work: &Work) -> Result<&Judge, Failed> {
+        if self.shadows.is_none() {
+            let most = if is_soft(self.plan) { LIGHT_RAYS } else { 2 };
+            let effort = Effort { base: 2, most, noise: 0.0, aim: Aim::Centre };
+            let subject = Subject { scene: without_textures(&self.subject.scene), ..self.subject.clone() };
+            self.shadows = Some(Judge::new(subject, best, effort, work)?);
+        }
+        Ok(self.shadows.as_ref().expect("made above"))
+    }
+}
+
+impl Judge {
+    fn new(subject: Subject, best: &Setting, effort: Effort, work: &Work) -> Result<Self, Failed> {
+        let plan = subject.plan(best)?;
+        let truth = Reference::draw(&subject::of_reference(&plan), effort, &|_| {}, work)?;
+        Ok(Self { subject, truth })
+    }
+
+    /// The errors of `settings`, and the truth's own.
+    fn errors(
+        &self,
+        knob: Knob,
+        settings: &[Setting],
+        work: &Work,
+    ) -> Result<(Vec<(f64, Errors)>, f64), Failed> {
+        let error = |setting: &Setting| -> Result<(f64, Errors), Failed> {
+            let radiance = self.subject.radiance(setting, work)?;
+            let errors = Errors {
+                all: difference(&radiance, &self.truth.radiance, None),
+                edges: difference(&radiance, &self.truth.radiance, Some(&self.truth.masks.edges)),
+            };
+            Ok((knob.number(setting).expect("only knobs with numbers have laws"), errors))
+        };
+        Ok((settings.iter().map(error).collect::<Result<_, _>>()?, self.truth.noise))
+    }
+}
+
+/// What few taps differ by from so many that more would change nothing, of the same map.
+fn against_converged(
+    subject: &Subject,
+    one: Setting,
+    settings: &[Setting],
+    work: &Work,
+) -> Result<(Vec<(f64, Errors)>, f64), Failed> {
+    let converged = subject.radiance(&Setting { pcf_taps: Some(CONVERGED_TAPS), ..one }, work)?;
+    let converged: Vec<[f64; 4]> = converged.iter().map(premultiplied).collect();
+    let error = |setting: &Setting| -> Result<(f64, Errors), Failed> {
+        let all = difference(&subject.radiance(setting, work)?, &converged, None);
+        let number = Knob::PcfTaps.number(setting).expect("taps are a number");
+        Ok((number, Errors { all, edges: Difference::default() }))
+    };
+    Ok((settings.iter().map(error).collect::<Result<_, _>>()?, 0.0))
+}
+
+/// What laws are about.
+struct Errors {
+    all: Difference,
+    edges: Difference,
+}
+
+fn measured(errors: &Errors, law: &Law) -> f64 {
+    let within = if law.region == Region::Edges { &errors.edges } else { &errors.all };
+    match law.metric {
+        Metric::Rmse => within.rmse,
+        Metric::Mae => within.mae,
+    }
+}
+
+/// The scene with the factors of its materials alone; what is seen through keeps the maps that say so.
+fn without_textures(scene: &Scene) -> Arc<Scene> {
+    let plain = |material: &Arc<Material>| {
+        let is_opaque = material.diffuse_map.as_ref().is_none_or(|map| map.least[3] == u8::MAX);
+        Arc::new(Material {
+            diffuse_map: material.diffuse_map.clone().filter(|_| !is_opaque),
+            specular_map: None,
+            emissive_map: None,
+            normal_map: None,
+            bump_map: None,
+            ..Material::clone(material)
+        })
+    };
+    Arc::new(Scene { materials: scene.materials.iter().map(plain).collect(), ..scene.clone() })
+}

@@ -1,0 +1,157 @@
+//! What a setting should cost and err by, before anything is measured.
+//!
+//! A model, no more: work counted from the plan, at rates that were measured once. A report on the scene takes
+//! its place.
+
+use super::choose::{Choice, Source};
+use super::setting::Setting;
+use crate::model::texture;
+use crate::plan::{Filter, Plan};
+
+/// Nanoseconds of one thread for a unit of work.
+struct Rates {
+    /// A triangle seen by the camera.
+    triangle: f64,
+    /// A triangle in a shadow map.
+    caster: f64,
+    /// A texel of a shadow map, with its share of the pyramid.
+    shadow_texel: f64,
+    /// A drawn pixel.
+    pixel: f64,
+    /// Each sample of a drawn pixel.
+    sample: f64,
+    /// A light at a drawn pixel.
+    light: f64,
+    /// A shadow at a drawn pixel, but for its taps.
+    shadow: f64,
+    /// A tap; most pixels need none.
+    tap: f64,
+    /// A texture at a drawn pixel.
+    texture: f64,
+    /// A pass over the neighbours of each drawn pixel.
+    neighbourhood: f64,
+    /// A finished pixel: resampling it.
+    resampled: f64,
+    /// A finished pixel: encoding it.
+    encoded: f64,
+}
+
+/// Of an x86-64 core with AVX-512 at about 2.5 GHz: the gallery's scenes and the demo at 320 × 240 and 800 × 600.
+const RATES: Rates = Rates {
+    triangle: 90.0,
+    caster: 45.0,
+    shadow_texel: 0.35,
+    pixel: 14.0,
+    sample: 2.5,
+    light: 9.0,
+    shadow: 9.0,
+    tap: 0.25,
+    texture: 12.0,
+    neighbourhood: 9.0,
+    resampled: 25.0,
+    encoded: 14.0,
+};
+
+/// How much of the threads' time is work.
+const PARALLEL: f64 = 0.85;
+
+/// What the picture of `plan` should cost and err by at `setting` on `threads`.
+#[must_use]
+pub fn expected(setting: Setting, plan: &Plan, threads: usize) -> Choice {
+    #[expect(clippy::cast_precision_loss, reason = "a count of threads")]
+    let speed = 1.0 + PARALLEL * (threads as f64 - 1.0);
+    let ms = nanoseconds(&setting, plan) * 1e-6 / speed;
+    Choice { setting, error: error(&setting, plan), ms, source: Source::Model }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of an estimate")]
+fn nanoseconds(setting: &Setting, plan: &Plan) -> f64 {
+    let rates = &RATES;
+    let finished = f64::from(plan.size[0]) * f64::from(plan.size[1]);
+    let drawn = finished * setting.render_scale * setting.render_scale;
+    let triangles: usize = plan.items.iter().map(|item| item.mesh.triangles.len()).sum();
+    let textures = plan.draws.iter().map(|draw| draw.surface.maps().count()).max().unwrap_or(0);
+    let a_pixel = rates.pixel
+        + rates.sample * f64::from(setting.samples)
+        + rates.light * plan.lights.len() as f64
+        + rates.texture * textures as f64
+        + rates.neighbourhood * plan.post.passes.len() as f64
+        + plan.shadows.iter().map(|pass| rates.shadow + rates.tap * taps(setting, &pass.filter)).sum::<f64>();
+    let resampled = if setting.render_scale == 1.0 { 0.0 } else { rates.resampled };
+    triangles as f64 * rates.triangle
+        + shadow_maps(setting, plan)
+        + drawn * a_pixel
+        + finished * (resampled + rates.encoded)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of an estimate")]
+fn shadow_maps(setting: &Setting, plan: &Plan) -> f64 {
+    let faces = plan.shadows.iter().flat_map(|pass| pass.faces());
+    let face = |face: &crate::plan::Face| {
+        let side = f64::from(setting.shadow_resolution.unwrap_or(face.view.width));
+        let casters: usize = face.items.iter().map(|item| item.mesh.triangles.len()).sum();
+        side * side * RATES.shadow_texel + casters as f64 * RATES.caster
+    };
+    faces.map(face).sum()
+}
+
+fn taps(setting: &Setting, filter: &Filter) -> f64 {
+    let taps = match filter {
+        Filter::Hard => 0,
+        Filter::Pcf { taps, .. } => setting.pcf_taps.unwrap_or(*taps),
+        Filter::Pcss(pcss) => {
+            let [search, filter] = setting.pcss_taps.unwrap_or([pcss.search_taps, pcss.filter_taps]);
+            search + filter
+        }
+    };
+    f64::from(taps)
+}
+
+/// Root of the sum of the squares of what each knob adds, in the mean of the gallery's scenes.
+fn error(setting: &Setting, plan: &Plan) -> f64 {
+    let pixel = 1.0 / setting.render_scale;
+    let coverage = 0.03 * f64::from(setting.samples).powf(-0.65) * pixel.sqrt();
+    let blur = if pixel > 1.0 { 0.03 * (pixel - 1.0).sqrt() } else { 0.0 };
+    let shadow = |pass: &crate::plan::ShadowPass| {
+        let own = pass.faces().first().map_or(1024, |face| face.view.width);
+        let side = f64::from(setting.shadow_resolution.unwrap_or(own));
+        let noise = match taps(setting, &pass.filter) {
+            0.0 => 0.0,
+            taps => 0.02 * taps.powf(-0.8),
+        };
+        let edge = 0.01 * (512.0 / side).sqrt();
+        edge * edge + noise * noise
+    };
+    let filter = match setting.texture_filter {
+        Some(texture::Filter::Nearest) => 0.03,
+        Some(texture::Filter::Bilinear) => 0.012,
+        Some(texture::Filter::Trilinear) | None => 0.008,
+    };
+    let textured = plan.draws.iter().any(|draw| draw.surface.maps().next().is_some());
+    let texture = if textured { filter * pixel.sqrt() } else { 0.0 };
+    let shadows: f64 = plan.shadows.iter().map(shadow).sum();
+    (coverage * coverage + blur * blur + shadows + texture * texture).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::Limits;
+    use crate::plan::FrameRequest;
+    use crate::plan::request::Preset;
+    use crate::scene::{NewScene, demo};
+    use std::sync::Arc;
+
+    #[test]
+    fn presets_cost_more_and_err_less_from_one_to_the_next() {
+        let new =
+            NewScene { document: Some(demo::document()), files: Some(demo::files()), ..NewScene::default() };
+        let scene = Arc::new(new.compile(&Limits::default()).expect("a sound scene"));
+        let plan = Plan::new(&scene, &FrameRequest::default(), &Limits::default()).expect("a plan");
+        let choices = Preset::WORDS.map(|(_, preset)| expected(Setting::of_preset(preset, &plan), &plan, 2));
+        assert!(choices.windows(2).all(|pair| pair[0].ms < pair[1].ms), "{choices:?}");
+        assert!(choices.windows(2).all(|pair| pair[0].error > pair[1].error), "{choices:?}");
+        let more = expected(Setting::of_preset(Preset::Normal, &plan), &plan, 8);
+        assert!(more.ms < choices[1].ms / 2.0);
+    }
+}
