@@ -25,6 +25,7 @@ mod render_once;
 mod reports;
 mod scenes;
 mod service;
+mod slopes;
 mod socket;
 mod streams;
 mod turntables;

@@ -146,6 +146,23 @@ async fn listeners_hear_how_far_a_report_is() {
     assert!(stages.contains(&"reference".to_owned()) && stages.contains(&"timing".to_owned()), "{stages:?}");
 }
 
+#[tokio::test(flavor = "multi_thread")]
+async fn a_report_holds_no_frame_up() {
+    let client = client().await;
+    let asked = tokio::spawn({
+        let client = client.clone();
+        async move { report(&client, "json", QUERY).await }
+    });
+    let mut frames = 0;
+    while !asked.is_finished() {
+        let query = format!("width=32&height=24&orbit={frames},20");
+        client.get(&format!("/scenes/b/frame.png?{query}")).await.png_size();
+        frames += 1;
+    }
+    assert!(frames > 10, "{frames} frames while a report was made");
+    assert_eq!(asked.await.expect("no panic").status, 200);
+}
+
 #[tokio::test]
 async fn what_no_report_can_be_is_refused() {
     let client = client().await;
