@@ -58,7 +58,7 @@ struct Drawing<'a> {
     layers: Vec<Layer>,
     /// What the first sample met; `None` before it.
     first: Option<Vec<Hit>>,
-    /// For each light, whether a sample saw it, and whether one did not.
+    /// For each layer from the front and each light there, whether a sample saw it, and whether one did not.
     seen: Vec<[bool; 2]>,
     is_edge: bool,
     is_textured: bool,
@@ -89,7 +89,7 @@ impl<'a> Drawing<'a> {
             halves: [Sum::default(); 2],
             layers: Vec::new(),
             first: None,
-            seen: vec![[false; 2]; studio.lighting.lamps.len()],
+            seen: Vec::new(),
             is_edge: false,
             is_textured: false,
         }
@@ -120,22 +120,24 @@ impl<'a> Drawing<'a> {
         self.is_textured |= !is_covered && background::is_picture(background);
         let behind = if is_covered { [0.0; 4] } else { background::radiance(background, ray.direction) };
         // Source: T. Porter, T. Duff, "Compositing Digital Images", SIGGRAPH 1984.
-        let color = layers.iter().rev().fold(DVec4::from_array(behind), |behind, layer| {
-            let color = self.shade(layer, ray.direction, half, number);
+        let color = layers.iter().enumerate().rev().fold(DVec4::from_array(behind), |behind, (at, layer)| {
+            let color = self.shade(at, layer, ray.direction, half, number);
             color.extend(1.0) * layer.alpha + behind * (1.0 - layer.alpha)
         });
         self.layers = layers;
         color
     }
 
-    /// Radiance of a layer towards the viewer.
-    fn shade(&mut self, layer: &Layer, direction: DVec3, half: usize, number: u32) -> DVec3 {
+    /// Radiance of the layer that is number `at` from the front towards the viewer.
+    fn shade(&mut self, at: usize, layer: &Layer, direction: DVec3, half: usize, number: u32) -> DVec3 {
         let Studio { world, lighting, camera, .. } = self.studio;
         let point = world.point(&layer.hit);
         self.is_textured |= reads_maps(point.material, lighting.shading_of(point.material));
         let is_back = point.geometric.dot(direction) > 0.0;
         let view = View { point: &point, towards: camera.towards_viewer(point.position), is_back };
-        let (sequence, seen) = (self.sequences[half], &mut self.seen);
+        let lamps = lighting.lamps.len();
+        self.seen.resize(self.seen.len().max((at + 1) * lamps), [false; 2]);
+        let (sequence, seen) = (self.sequences[half], &mut self.seen[at * lamps..]);
         lighting.radiance(&view, &mut |lamp| {
             let pair = u32::try_from(lamp).map_or(u32::MAX, |lamp| lamp + 1);
             let is_seen = lighting.lamps[lamp].is_seen(world, &point, sequence.point(number, pair));

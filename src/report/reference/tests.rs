@@ -198,6 +198,24 @@ fn the_penumbra_of_a_lamp_is_a_part_of_its_disc() {
 }
 
 #[test]
+fn a_lit_pane_over_a_shadow_is_no_penumbra() {
+    let scene = scene(&json!({
+        "camera": from_above(2.0),
+        "environment": { "ambient": [0, 0, 0] },
+        "lights": { "sun": { "type": "directional", "direction": [0, -1, 0], "shadow": { "filter": "hard" } } },
+        "materials": { "white": { "shading": "lambert", "diffuse": [1, 1, 1] }, "pane": { "shading": "lambert", "diffuse": [1, 1, 1], "opacity": 0.4 } },
+        "meshes": { "floor": level_quad(0.0, [-9.0, -9.0], [9.0, 9.0]), "roof": level_quad(1.0, [0.0, -9.0], [-9.0, 9.0]), "pane": level_quad(2.0, [-9.0, -9.0], [9.0, 9.0]) },
+        "instances": { "floor": { "mesh": "floor", "material": "white" }, "roof": { "mesh": "roof", "material": "white" }, "pane": { "mesh": "pane", "material": "pane" } },
+    }));
+    let reference = draw(&scene, [16, 16], 8);
+    for (i, pixel) in reference.radiance.iter().enumerate() {
+        let expected = if i % 16 < 8 { 0.4 } else { 1.0 };
+        assert!((pixel[0] - expected).abs() < 1e-6, "{i}: {pixel:?}");
+    }
+    assert_eq!(reference.masks.penumbrae, [false; 256]);
+}
+
+#[test]
 fn a_highlight_is_what_the_formula_says() {
     let scene = scene(&json!({
         "camera": { "position": [0, 3, 4], "target": [0, 0, 0], "fov_y_deg": 0.001 },
