@@ -21,6 +21,7 @@ mod pick;
 mod pictures;
 mod plan;
 mod random;
+mod reference;
 mod render_once;
 mod reports;
 mod scenes;
