@@ -6,7 +6,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use rasterd::limits::Limits;
 use rasterd::math::simd::Level;
-use rasterd::pipeline::{self, Work};
+use rasterd::pipeline::{self, Order, Work};
 use rasterd::plan::{FrameRequest, Plan};
 use rasterd::scene::{self, Document, Files, Scene, demo};
 use serde_json::{Value, json};
@@ -62,7 +62,7 @@ fn lamp() -> Value {
 fn frames(c: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().build().expect("threads start");
     let cancel = AtomicBool::new(false);
-    let work = Work { pool: &pool, cancel: &cancel, level: Level::new() };
+    let work = Work { pool: &pool, cancel: &cancel, level: Level::new(), order: Order::Rows };
     let inputs = [
         ("demo 800x600 x4", compiled(&demo::document(), &demo::files()), 800, 600, 4),
         ("dense 1280x720 x1", compiled(&dense(), &Files::default()), 1280, 720, 1),

@@ -9,7 +9,7 @@ use rasterd::encode;
 use rasterd::limits::Limits;
 use rasterd::math::simd::Level;
 use rasterd::pipeline::post::{Effect, LinearFrame, Plane, write_rows};
-use rasterd::pipeline::{self, Cancelled, Frame, Work};
+use rasterd::pipeline::{self, Cancelled, Frame, Order, Work};
 use rasterd::plan::{FrameRequest, Plan};
 use rasterd::scene::{self, Document, Files};
 use serde_json::json;
@@ -185,7 +185,7 @@ pub fn draw(width: u32, height: u32, work: &Work) -> Result<Frame, Cancelled> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let pool = rayon::ThreadPoolBuilder::new().build()?;
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     std::fs::write("halftone.png", encode::png(&draw(480, 320, &work)?))?;
     println!("wrote halftone.png");
     Ok(())

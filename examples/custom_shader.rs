@@ -12,7 +12,7 @@ use rasterd::math::simd::Level;
 use rasterd::pipeline::draw::{DrawCall, Rect, State, Targets};
 use rasterd::pipeline::program::{Block, Program};
 use rasterd::pipeline::shader::Outputs;
-use rasterd::pipeline::{Cancelled, Frame, Work};
+use rasterd::pipeline::{Cancelled, Frame, Order, Work};
 use rasterd::scene::Cull;
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
@@ -149,7 +149,7 @@ pub fn draw(work: &Work) -> Result<[Frame; 2], Cancelled> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let pool = rayon::ThreadPoolBuilder::new().build()?;
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     let [colors, normals] = draw(&work)?;
     std::fs::write("flag.png", encode::png(&colors))?;
     std::fs::write("flag-normals.png", encode::png(&normals))?;

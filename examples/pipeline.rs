@@ -17,7 +17,7 @@ use rasterd::pipeline::program::{Block, Program};
 use rasterd::pipeline::shade::BLOCK;
 use rasterd::pipeline::shade::texture::{Coordinates, sample};
 use rasterd::pipeline::shader::Outputs;
-use rasterd::pipeline::{Cancelled, Frame, Pixels, Stats, Timings, Work};
+use rasterd::pipeline::{Cancelled, Frame, Order, Pixels, Stats, Timings, Work};
 use rasterd::scene::Cull;
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
@@ -194,7 +194,7 @@ pub fn draw(work: &Work) -> Result<[Frame; 3], Cancelled> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let pool = rayon::ThreadPoolBuilder::new().build()?;
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     let frames = draw(&work)?;
     for (name, frame) in ["pipeline.png", "pipeline-depth.png", "pipeline-ids.png"].iter().zip(&frames) {
         std::fs::write(name, encode::png(frame))?;

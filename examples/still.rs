@@ -5,7 +5,7 @@
 use rasterd::encode;
 use rasterd::limits::Limits;
 use rasterd::math::simd::Level;
-use rasterd::pipeline::{self, Work};
+use rasterd::pipeline::{self, Order, Work};
 use rasterd::plan::{FrameRequest, Plan};
 use rasterd::scene::{self, Document, Files};
 use serde_json::json;
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         FrameRequest { width: Some(640), height: Some(420), samples: Some(8), ..FrameRequest::default() };
     let plan = Plan::new(&scene, &request, &limits)?;
     let pool = rayon::ThreadPoolBuilder::new().build()?;
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     let frame = pipeline::render(&plan, &work)?;
 
     std::fs::write("still.png", encode::png(&frame))?;

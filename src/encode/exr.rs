@@ -124,12 +124,14 @@ mod tests {
     use super::*;
     use crate::encode::float_frame;
     use crate::math::simd::Level;
+    use crate::pipeline::Order;
     use std::io::Cursor;
     use std::sync::atomic::AtomicBool;
 
     fn encode(width: u32, pixels: &[[f32; 4]], opaque: bool, threads: usize) -> Vec<u8> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+        let work =
+            Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
         exr(&float_frame(width, pixels, opaque), &work).unwrap()
     }
 

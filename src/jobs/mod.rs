@@ -27,7 +27,7 @@ pub use report::Reports;
 use crate::encode;
 use crate::limits::Limits;
 use crate::metrics::{Metrics, Rejection};
-use crate::pipeline::{self, Hit, Work};
+use crate::pipeline::{self, Hit, Order, Work};
 use crate::plan::Output;
 use crate::plan::request::{Elide, QueryFault};
 use crate::plan::{FrameRequest, Plan, PlanError};
@@ -323,7 +323,7 @@ impl Engine {
     }
 
     fn work<'a>(&'a self, cancel: &'a AtomicBool) -> Work<'a> {
-        Work { pool: &self.pool, cancel, level: self.level }
+        Work { pool: &self.pool, cancel, level: self.level, order: Order::Rows }
     }
 
     fn render(

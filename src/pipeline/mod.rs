@@ -31,7 +31,7 @@ pub mod work;
 pub use pick::{Hit, pick};
 pub use stats::{Stats, Timings};
 pub use target::{Frame, Pixels};
-pub use work::{Cancelled, Work};
+pub use work::{Cancelled, Order, Work};
 
 use crate::plan::{Output, Plan};
 use geometry::bin::TileGrid;

@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 use rasterd::limits::Limits;
-use rasterd::pipeline::{self, Frame, Hit, Pixels, Work};
+use rasterd::pipeline::{self, Frame, Hit, Order, Pixels, Work};
 use rasterd::plan::{FrameRequest, Output, Plan};
 use rasterd::scene::{Document, Files, Scene, compile};
 use serde_json::Value;
@@ -25,7 +25,7 @@ pub fn work() -> Work<'static> {
 
 /// The threads of `pool` at a SIMD level.
 pub fn work_of(pool: &rayon::ThreadPool, level: Level) -> Work<'_> {
-    Work { pool, cancel: &NEVER, level }
+    Work { pool, cancel: &NEVER, level, order: Order::Rows }
 }
 
 /// Compiles a document that needs no files.

@@ -3,11 +3,11 @@
 use crate::measure::{Worst, at_most};
 use rasterd::math::round_to_f32;
 use rasterd::math::simd::Level;
-use rasterd::pipeline::Work;
 use rasterd::pipeline::draw::{DrawCall, Rect, State, Targets};
 use rasterd::pipeline::program::{Block, Program};
 use rasterd::pipeline::shade::BLOCK;
 use rasterd::pipeline::shader::Outputs;
+use rasterd::pipeline::{Order, Work};
 use rasterd::scene::Cull;
 use std::sync::atomic::AtomicBool;
 
@@ -72,7 +72,8 @@ fn targets() -> Targets {
 fn draw(targets: &mut Targets, state: &State, program: &dyn Program, triangles: &[[u32; 3]], instances: u32) {
     for threads in [1, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
-        let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+        let work =
+            Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
         let mut drawn = targets.clone();
         let call = DrawCall { program, vertices: 4, triangles, instances, first_id: 7 };
         call.draw(&mut drawn, state, &work).expect("nothing cancels");
@@ -136,7 +137,7 @@ fn within_one_call_without_depth_writes_the_last_of_the_nearer_wins() {
     draw_card(&mut targets, &State::new(WHOLE), &card(EVERYWHERE, 0.2, 0.0));
     let state = State { depth_write: false, ..State::new(WHOLE) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads start");
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     let call = DrawCall { program: &both, vertices: 12, triangles: &triangles, instances: 1, first_id: 1 };
     call.draw(&mut targets, &state, &work).expect("nothing cancels");
     assert_eq!(red(&targets, 40, 40), 0.25);
@@ -280,7 +281,7 @@ fn what_a_pixel_part_leaves_alone_is_transparent_black() {
     let program = LeftAlone(Plain { vertices, cutoff: None });
     let triangles: Vec<[u32; 3]> = (0..2).flat_map(|n| QUAD.map(|t| t.map(|v| v + 4 * n))).collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     let call = DrawCall { program: &program, vertices: 8, triangles: &triangles, instances: 1, first_id: 1 };
     let mut targets = targets();
     call.draw(&mut targets, &State::new(WHOLE), &work).expect("nothing cancels");

@@ -60,12 +60,14 @@ fn nearest_kernel<S: Simd>(simd: S, channels: &[[i32; ENTRIES]; 3], first: usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pipeline::Order;
     use std::sync::atomic::AtomicBool;
 
     #[test]
     fn every_cell_has_the_nearest_colour() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-        let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+        let work =
+            Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
         let colors: Vec<[u8; 3]> =
             (0..=254u8).map(|i| [i, i.wrapping_mul(37), i.wrapping_mul(101)]).collect();
         let indices = nearest(&colors, &work).unwrap();

@@ -1,11 +1,11 @@
 use super::*;
 use crate::math::simd::Level;
-use crate::pipeline::Pixels;
+use crate::pipeline::{Order, Pixels};
 use std::sync::atomic::AtomicBool;
 
 fn encode(frames: &[Frame], threads: usize) -> Vec<u8> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     gif(frames, 7, &work).unwrap()
 }
 

@@ -1,11 +1,11 @@
 use super::*;
 use crate::math::simd::Level;
-use crate::pipeline::{Pixels, Stats, Timings};
+use crate::pipeline::{Order, Pixels, Stats, Timings};
 use std::sync::atomic::AtomicBool;
 
 fn encode(frame: &Frame, quality: u8, threads: usize) -> Vec<u8> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     jpeg(frame, quality, &work).unwrap()
 }
 
@@ -57,7 +57,7 @@ fn strips_join_to_the_picture() {
 fn a_comment_is_a_segment_and_nothing_else() {
     let frame = frame(40, 30);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     let mut commented = jpeg_with_comment(&frame, 80, "frame=7", &work).unwrap();
     // Behind the start of the image and the JFIF segment, which must come first.
     assert_eq!(commented.drain(20..31).collect::<Vec<_>>(), b"\xFF\xFE\0\x09frame=7");

@@ -1,7 +1,7 @@
 //! What the filters' unit tests share.
 
 use crate::math::simd::Level;
-use crate::pipeline::work::Work;
+use crate::pipeline::work::{Order, Work};
 use std::sync::atomic::AtomicBool;
 
 /// A small random number generator (xorshift64*), so that a failure can be repeated.
@@ -36,5 +36,5 @@ impl Random {
 /// Two threads at the machine's best SIMD level.
 pub(super) fn with_work<R>(f: impl FnOnce(&Work) -> R) -> R {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    f(&Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() })
+    f(&Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows })
 }

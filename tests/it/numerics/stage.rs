@@ -10,7 +10,7 @@ use rasterd::pipeline::geometry::setup::Triangle;
 use rasterd::pipeline::geometry::{self, Bins};
 use rasterd::pipeline::tiles::cover::{self, BlockDepths, Region, Target};
 use rasterd::pipeline::tiles::{Scratch, tile_shift};
-use rasterd::pipeline::{Work, samples};
+use rasterd::pipeline::{Order, Work, samples};
 use rasterd::plan::{Item, Opacity, Slot};
 use rasterd::scene::Cull;
 use std::sync::atomic::AtomicBool;
@@ -24,7 +24,7 @@ static POOL: LazyLock<rayon::ThreadPool> = LazyLock::new(|| {
 /// Calls `f` with the threads and the instruction set of the tests.
 pub fn with_work<R>(f: impl FnOnce(&Work) -> R) -> R {
     let cancel = AtomicBool::new(false);
-    f(&Work { pool: &POOL, cancel: &cancel, level: Level::new() })
+    f(&Work { pool: &POOL, cancel: &cancel, level: Level::new(), order: Order::Rows })
 }
 
 /// A view of which one unit is one pixel: a corner made by [`on_screen`] snaps to exactly the
