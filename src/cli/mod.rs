@@ -1,4 +1,4 @@
-//! `rasterd [serve]`, `rasterd render`, `rasterd report`, `rasterd healthcheck`.
+//! `rasterd [serve]`, `rasterd render`, `rasterd report`, `rasterd healthcheck`, `rasterd selftest`.
 //!
 //! Exit code 0 when all went well, 1 for bad input or a failed check, 2 for wrong usage (clap's own).
 
@@ -8,6 +8,7 @@ mod frame_flags;
 mod healthcheck;
 mod render;
 mod report;
+mod selftest;
 mod serve;
 mod source;
 
@@ -43,6 +44,8 @@ enum Command {
     Report(Box<report::Report>),
     /// Ask a server on the listening address whether it lives
     Healthcheck(healthcheck::Healthcheck),
+    /// Run the catalogue of stiff and extreme cases, and print each error beside its bound
+    Selftest(selftest::Selftest),
 }
 
 /// Runs the command that the arguments name.
@@ -54,6 +57,7 @@ pub fn run() -> ExitCode {
         Some(Command::Render(render)) => render.run(),
         Some(Command::Report(report)) => report.run(),
         Some(Command::Healthcheck(check)) => check.run(),
+        Some(Command::Selftest(selftest)) => selftest.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

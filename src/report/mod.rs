@@ -18,6 +18,7 @@ pub mod machine;
 mod make;
 pub mod plot;
 pub mod reference;
+pub mod selftest;
 pub mod setting;
 pub mod statistics;
 pub mod subject;

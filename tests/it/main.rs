@@ -1,12 +1,9 @@
 //! Public behaviour.
 
 mod archive;
-mod box_on_floor;
 mod budgets;
 mod client;
-mod closed_form;
 mod command;
-mod draw;
 mod draws;
 mod errors;
 mod files;
@@ -16,11 +13,9 @@ mod gallery;
 mod guard;
 mod measure;
 mod metrics;
-mod numerics;
 mod pick;
 mod pictures;
 mod plan;
-mod random;
 mod reference;
 mod render_once;
 mod reports;
@@ -31,3 +26,5 @@ mod socket;
 mod streams;
 mod turntables;
 mod unchanged;
+
+use rasterd::report::selftest::instruments::{box_on_floor, closed_form, draw, random};

@@ -1,8 +1,8 @@
 //! The examples draw what their documentation says.
 
 use super::golden::assert_golden;
-use crate::draw::{pool, work, work_of};
-use crate::numerics::determinism::levels;
+use crate::draw::{levels, pool, work, work_of};
+
 use rasterd::math::simd::Level;
 
 #[path = "../../../examples/custom_post.rs"]
@@ -36,7 +36,7 @@ fn golden_examples() {
 fn a_halftone_print_is_the_same_to_the_byte() {
     let draw = |threads, level| {
         let pool = pool(threads);
-        custom_post::draw(120, 80, &work_of(&pool, level)).expect("nobody cancels").pixels
+        custom_post::draw(120, 80, &work_of(pool, level)).expect("nobody cancels").pixels
     };
     let first = draw(1, Level::new());
     for (name, level) in levels() {

@@ -1,9 +1,9 @@
 //! `post`: from a document to bytes.
 
 use crate::closed_form::encode;
-use crate::draw::{Picture, frame, output, plan, pool, samples, scene, work_of};
+use crate::draw::{Picture, frame, levels, output, plan, pool, samples, scene, work_of};
 use crate::measure::Worst;
-use crate::numerics::determinism::levels;
+
 use fearless_simd::Level;
 use rasterd::limits::Limits;
 use rasterd::pipeline::{self, Pixels};
@@ -239,7 +239,7 @@ fn pictures_with_post_are_the_same_to_the_byte() {
         let scene = scene(&document(background, chain.clone()));
         let plan = plan(&scene, &samples(count));
         let draw = |threads: usize, level| {
-            pipeline::render(&plan, &work_of(&pool(threads), level)).expect("nobody cancels").pixels
+            pipeline::render(&plan, &work_of(pool(threads), level)).expect("nobody cancels").pixels
         };
         let first = draw(1, Level::new());
         for (name, level) in levels() {
