@@ -48,7 +48,7 @@ fn fitted(law: &Law, points: &[[f64; 2]]) -> Fit {
 
 /// White triangles that turn every way, none touching another, on black: a pixel of the picture is a unit.
 fn scattered_triangles() -> Value {
-    let mut rng = Random::new("slopes of coverage", 40);
+    let mut rng = Random(40);
     let mut positions: Vec<[f64; 3]> = Vec::new();
     for cell in 0..36 {
         let middle = [cell % 6, cell / 6].map(|n| (f64::from(n) - 2.5) * 26.0 + rng.between(-2.0, 2.0));

@@ -3,8 +3,8 @@
 use super::Ledger;
 use super::cases::shadows::{cube, kernels};
 use super::cases::{
-    attributes, camera, clipping, codes, colour, coverage, crops, depth, determinism, enormous, light,
-    limits, normals, post, relief, samples, shadows, shift, sky, textures,
+    attributes, camera, clipping, codes, colour, coverage, crops, depth, determinism, enormous, float_state,
+    light, limits, models, normals, post, relief, samples, shadows, shift, sky, textures,
 };
 use super::ledger::{Measurement, Outcome};
 
@@ -113,6 +113,7 @@ pub const CASES: &[Case] = &[
     ]),
     case("B15", "Of coplanar surfaces the first wins wherever depths are equal, and the same one every time", &[
         depth::b15_of_coplanar_squares_the_first_wins_wherever_depths_are_equal,
+        depth::b15_layers_of_one_depth_are_composited_in_the_order_of_submission,
         determinism::coplanar_surfaces_are_the_same_to_the_byte,
         determinism::the_order_of_names_does_not_show_where_depths_differ,
     ]),
@@ -150,6 +151,7 @@ pub const CASES: &[Case] = &[
     case("B24", "The level of detail is right to a 256th, and within the levels to the horizon", &[
         attributes::b24_the_level_of_detail_is_right_to_a_256th_and_stays_within_the_levels,
         attributes::b24_derivatives_beyond_all_bounds_read_the_first_level_or_the_last,
+        textures::a_floor_to_the_horizon_fades_to_its_mean,
     ]),
     case("B25", "Normals are those of the transformed triangle under every scale", &[
         normals::normals_are_those_of_the_transformed_triangle_under_every_scale,
@@ -224,6 +226,8 @@ pub const CASES: &[Case] = &[
     ]),
     case("B39", "A kernel without size is the hard shadow, and one of any size stays between light and dark", &[
         kernels::a_kernel_without_size_is_the_hard_shadow,
+        kernels::soft_shadows_lie_between_light_and_dark_whatever_blocks,
+        cube::soft_shadows_of_lamps_lie_between_light_and_dark_whatever_blocks,
     ]),
     case("B40", "The sides of a cube meet without a seam", &[
         cube::the_sides_of_a_cube_meet_without_a_seam,
@@ -237,6 +241,7 @@ pub const CASES: &[Case] = &[
     case("B42", "Every code of data survives the way into a file", &[
         codes::b42_every_16_bit_code_survives_the_way_through_depth_and_a_file,
         codes::b42_every_code_of_alpha_survives_and_the_colour_under_it,
+        codes::b42_radiance_in_floats_is_finite_and_clamped,
     ]),
     case("B43", "Tone mapping takes everything to 0 to 1 in order", &[
         post::pointwise::tone_mapping_takes_everything_to_0_to_1_in_order,
@@ -266,8 +271,10 @@ pub const CASES: &[Case] = &[
         sky::b46_the_sky_is_only_where_nothing_else_is,
         sky::b46_a_computed_sky_is_read_as_its_table_says,
     ]),
-    case("B47", "Odd models are read, or refused by line", &[
-        limits::odd_models_are_read_or_refused_by_line,
+    case("B47", "Odd and damaged models are read or refused by line, and concave faces covered once", &[
+        models::odd_models_are_read_or_refused_by_line,
+        models::concave_faces_are_covered_exactly_once,
+        models::damaged_files_are_read_or_refused,
     ]),
     case("B48", "Sizes are met exactly at their limits, and none wraps", &[
         limits::pictures_are_planned_up_to_their_limits_and_not_beyond,
@@ -280,7 +287,12 @@ pub const CASES: &[Case] = &[
         determinism::relief_is_the_same_to_the_byte,
         determinism::radiance_depth_and_codes_are_the_same_to_the_byte,
         determinism::the_catalogue_holds_for_other_engines,
+        determinism::pictures_with_effects_are_the_same_to_the_byte,
         determinism::a_frame_is_the_same_in_every_run_and_beside_others,
         post::effects_are_the_same_to_the_bit,
+    ]),
+    case("B50", "No thread loses subnormal numbers, and every build draws the same", &[
+        float_state::every_thread_keeps_subnormal_numbers,
+        float_state::every_build_draws_the_same,
     ]),
 ];

@@ -70,3 +70,75 @@ tests! {
     b49_the_same_to_the_byte "B49"
     b50_float_state "B50"
 }
+
+#[test]
+fn the_cases_are_b1_to_b50_in_order() {
+    let ids: Vec<&str> = CASES.iter().map(|case| case.id).collect();
+    assert_eq!(ids, (1..=50).map(|n| format!("B{n}")).collect::<Vec<_>>());
+}
+
+#[test]
+fn cases_are_named_in_any_case_and_unknown_ones_refused() {
+    let ids = |names: &[&str]| {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        named(&names).map(|cases| cases.iter().map(|case| case.id).collect::<Vec<_>>())
+    };
+    assert_eq!(ids(&["b30", "B13"]), Ok(vec!["B13", "B30"]));
+    assert_eq!(ids(&[]).map(|all| all.len()), Ok(50));
+    assert_eq!(ids(&["B51"]), Err(UnknownCase("B51".to_owned())));
+}
+
+/// Runs checks as a case of their own.
+fn measured(checks: &'static [Check]) -> Vec<Measurement> {
+    let case: &'static Case = Box::leak(Box::new(Case { id: "B0", claim: "a test", checks }));
+    let ran = run(&[case], Effort::Quick, &Engine::default(), &AtomicBool::new(false), &|_| ());
+    ran.expect("nobody cancels")
+}
+
+#[test]
+fn the_worst_margin_comes_first_and_what_breaks_before_it() {
+    let rows = measured(&[
+        |ledger| ledger.at_most("", "half", 1.0, 2.0),
+        |_| panic!("no more"),
+        |ledger| ledger.at_least("", "too little", 1.0, 4.0),
+        |_| (),
+        |ledger| ledger.none_of("", "none", 0, 3),
+    ]);
+    let metrics: Vec<(&str, Outcome)> = rows.iter().map(|row| (row.metric.as_str(), row.outcome)).collect();
+    assert_eq!(
+        metrics,
+        [
+            ("no more", Outcome::Broken),
+            ("nothing was measured", Outcome::Broken),
+            ("too little", Outcome::Out),
+            ("half", Outcome::Holds),
+            ("none", Outcome::Holds),
+        ]
+    );
+}
+
+#[test]
+fn of_one_metric_the_worst_setting_is_kept_with_its_seed() {
+    let rows = measured(&[|ledger| {
+        ledger.random(7);
+        for (setting, value) in [("a", 1.0), ("b", 3.0), ("c", 2.0)] {
+            ledger.at_most(setting, "error", value, 2.0);
+        }
+    }]);
+    assert_eq!((rows.len(), rows[0].settings), (1, 3));
+    assert_eq!((rows[0].setting.as_str(), rows[0].value), ("b (seed 0x7)", 3.0));
+    assert!(table(&rows).lines().nth(1).is_some_and(|line| line.ends_with("0.67 OUT  b (seed 0x7), of 3")));
+}
+
+#[test]
+fn what_is_no_number_is_out() {
+    let rows = measured(&[|ledger| ledger.at_most("", "error", f64::NAN, 1.0)]);
+    assert_eq!((rows[0].outcome, rows[0].margin), (Outcome::Out, 0.0));
+}
+
+#[test]
+fn a_set_flag_ends_a_run() {
+    let all = named(&[]).expect("all of them");
+    let ran = run(&all, Effort::Quick, &Engine::default(), &AtomicBool::new(true), &|_| ());
+    assert_eq!(ran, Err(crate::pipeline::Cancelled));
+}

@@ -1,12 +1,11 @@
 //! `post`: from a document to bytes.
 
 use crate::closed_form::encode;
-use crate::draw::{Picture, frame, levels, output, plan, pool, samples, scene, work_of};
+use crate::draw::{Picture, frame, output, samples, scene};
 use crate::measure::Worst;
 
-use fearless_simd::Level;
 use rasterd::limits::Limits;
-use rasterd::pipeline::{self, Pixels};
+use rasterd::pipeline::Pixels;
 use rasterd::plan::{FrameRequest, Output, Plan, PlanError};
 use serde_json::{Value, json};
 
@@ -226,28 +225,6 @@ fn the_planes_of_a_chain_count_as_working_memory() {
     let plain = needed(json!([{ "type": "tonemap" }]));
     assert_eq!(needed(json!([{ "type": "blur" }])) - plain, 4 * plane);
     assert_eq!(needed(json!([{ "type": "blur" }, { "type": "fxaa" }])) - plain, 5 * plane);
-}
-
-/// B49, from the document to the bytes; 8 samples have smaller tiles.
-#[test]
-fn pictures_with_post_are_the_same_to_the_byte() {
-    let chain = json!([
-        { "type": "vignette" }, { "type": "bloom" }, { "type": "tonemap" }, { "type": "fxaa" },
-        { "type": "blur", "radius": 1.5 }, { "type": "grayscale", "amount": 0.4 },
-    ]);
-    for (background, count) in [("gradient", 1), ("transparent", 8)] {
-        let scene = scene(&document(background, chain.clone()));
-        let plan = plan(&scene, &samples(count));
-        let draw = |threads: usize, level| {
-            pipeline::render(&plan, &work_of(pool(threads), level)).expect("nobody cancels").pixels
-        };
-        let first = draw(1, Level::new());
-        for (name, level) in levels() {
-            for threads in [1, 2, 16] {
-                assert!(draw(threads, level) == first, "{background}: {name}, {threads} threads");
-            }
-        }
-    }
 }
 
 #[test]

@@ -263,30 +263,6 @@ fn alpha_of_a_transparent_picture_is_what_layers_leave_open() {
     }
 }
 
-/// Sheets at one depth, `first` and `second` by name; what the middle shows.
-fn coplanar(first: Sheet, second: Sheet) -> [u8; 4] {
-    let flat = |sheet: Sheet| Sheet { centre: [0.0; 3], ..sheet };
-    let document = sheets(&[("a".to_owned(), flat(first)), ("b".to_owned(), flat(second))], 4);
-    Picture::of(&document).at(32, 20)
-}
-
-/// B15: of two at one depth the one submitted first is composited first.
-#[test]
-fn b15_layers_of_one_depth_are_composited_in_the_order_of_submission() {
-    let [rose, leaf, _] = SHEETS;
-    for (first, second) in [(rose, leaf), (leaf, rose)] {
-        let under = over(first.color, first.opacity, BACK.into());
-        let expected = over(second.color, second.opacity, under);
-        let apart = codes_apart(coplanar(first, second), expected);
-        at_most("B15 two blended sheets", "codes", apart, HALF_A_CODE);
-    }
-    let wall = Sheet { opacity: 1.0, ..leaf };
-    let before = over(rose.color, rose.opacity, wall.color.into());
-    at_most("B15 blended after opaque", "codes", codes_apart(coplanar(wall, rose), before), HALF_A_CODE);
-    let hidden = codes_apart(coplanar(rose, wall), wall.color.into());
-    at_most("B15 blended before opaque", "codes", hidden, HALF_A_CODE);
-}
-
 /// Sheets that nearly coincide, differently cut into triangles: some pixels may go either way, but the
 /// same way in every run.
 #[test]

@@ -1,6 +1,7 @@
 //! Values as codes, and codes as values (B42).
 
 use crate::encode;
+use crate::pipeline::Pixels;
 use crate::plan::{FrameRequest, Output};
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::draw::{
@@ -69,5 +70,36 @@ pub fn b42_every_code_of_alpha_survives_and_the_colour_under_it(ledger: &mut Led
         ledger.none_of(&format!("alpha, {samples} samples"), "differing pixels", wrong, 256);
         let wrong = (0..256).filter(|&x| read.get_pixel(x, 0).0 != expected(x)).count();
         ledger.none_of(&format!("alpha in a file, {samples} samples"), "differing pixels", wrong, 256);
+    }
+}
+
+/// Floats of a picture under a light beyond all brightness.
+pub fn b42_radiance_in_floats_is_finite_and_clamped(ledger: &mut Ledger) {
+    for intensity in [1e5, 1e20, 1e37] {
+        let document = json!({
+            "camera": { "position": [0, 1, 1], "target": [0, 0, 0] },
+            "lights": { "lamp": { "type": "point", "position": [0, 1e-3, 0], "intensity": intensity } },
+            "materials": { "m": { "specular": [1, 1, 1], "emissive": [1e30, 0, 1e-40] } },
+            "meshes": { "floor": { "type": "plane", "size": [4, 4] } },
+            "instances": { "floor": { "mesh": "floor", "material": "m" } },
+            "render": { "width": 64, "height": 64 },
+        });
+        let drawn = frame(&scene(&document), &output(Output::Radiance));
+        let Pixels::Rgba32F { pixels, .. } = drawn.pixels else { panic!("asked for floats") };
+        let floats = pixels.as_flattened();
+        let beyond = floats.iter().filter(|value| !(0.0..=65504.0).contains(*value)).count();
+        ledger.none_of(
+            &format!("intensity {intensity:e}"),
+            "floats that are not in 0 to 65504",
+            beyond,
+            floats.len(),
+        );
+        let clamped = floats.iter().filter(|value| **value == 65504.0).count();
+        ledger.at_least(
+            &format!("intensity {intensity:e}"),
+            "control: floats that are clamped",
+            clamped as f64,
+            64.0,
+        );
     }
 }

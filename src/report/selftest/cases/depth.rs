@@ -4,11 +4,14 @@
 use crate::math::View;
 use crate::pipeline::geometry::setup::Triangle;
 use crate::report::selftest::Ledger;
+use crate::report::selftest::instruments::closed_form::{Camera, codes_apart};
+use crate::report::selftest::instruments::draw::Picture;
 use crate::report::selftest::instruments::draw::pool;
 use crate::report::selftest::instruments::random::Random;
 use crate::report::selftest::instruments::stage::*;
 use crate::report::selftest::instruments::worst::{U, Worst};
 use glam::DVec3;
+use serde_json::json;
 
 /// Depth of a set-up triangle at a point in sub-pixels: exact integer weights, and a sum of terms
 /// that are all positive.
@@ -212,4 +215,41 @@ pub fn b15_of_coplanar_squares_the_first_wins_wherever_depths_are_equal(ledger: 
     }
     assert!(speckled > 1000, "{speckled} samples are too few to show anything");
     ledger.none_of("coplanar squares", "samples that show the wrong one", wrong, equal);
+}
+
+/// Two sheets of one depth, the first named first, over a wall; what the middle of the picture shows.
+fn sheets(sheets: [([f64; 3], f64); 2]) -> [u8; 4] {
+    let camera = Camera::orthographic([0.0, 0.0, 3.0], [0.0; 3], 2.0, 64, 64);
+    let material = |(color, opacity): ([f64; 3], f64)| json!({ "shading": "unlit", "diffuse": color, "opacity": opacity });
+    let instance = |name: &str| json!({ "mesh": "sheet", "material": name, "rotation_deg": [90, 0, 0] });
+    let document = json!({
+        "camera": camera.document(),
+        "environment": { "background": { "type": "color", "color": WALL } },
+        "lights": {},
+        "materials": { "a": material(sheets[0]), "b": material(sheets[1]) },
+        "meshes": { "sheet": { "type": "plane", "size": [1, 1] } },
+        "instances": { "a": instance("a"), "b": instance("b") },
+        "render": camera.render(4),
+    });
+    Picture::of(&document).at(32, 20)
+}
+
+const WALL: [f64; 3] = [0.2, 0.3, 0.6];
+
+/// Of two sheets at one depth the one submitted first is composited first.
+pub fn b15_layers_of_one_depth_are_composited_in_the_order_of_submission(ledger: &mut Ledger) {
+    let over = |(color, opacity): ([f64; 3], f64), behind: DVec3| {
+        DVec3::from_array(color) * opacity + behind * (1.0 - opacity)
+    };
+    let (rose, leaf) = (([0.9, 0.2, 0.3], 0.35), ([0.1, 0.8, 0.2], 0.6));
+    let wall = (leaf.0, 1.0);
+    for (name, pair, expected) in [
+        ("rose, leaf", [rose, leaf], over(leaf, over(rose, WALL.into()))),
+        ("leaf, rose", [leaf, rose], over(rose, over(leaf, WALL.into()))),
+        ("opaque, blended", [wall, rose], over(rose, wall.0.into())),
+        ("blended, opaque", [rose, wall], wall.0.into()),
+    ] {
+        // Half a code of rounding, and f32's share.
+        ledger.at_most(name, "codes of layers at one depth", codes_apart(sheets(pair), expected), 0.51);
+    }
 }

@@ -83,7 +83,7 @@ pub fn data_outputs_are_the_same_to_the_byte(ledger: &mut Ledger) {
 }
 
 /// A textured floor to the horizon, boxes with shadows, a mirrored torus, two lights, a gradient.
-fn busy(camera: Value) -> Value {
+pub fn busy(camera: Value) -> Value {
     json!({
         "camera": camera,
         "lights": {
@@ -112,7 +112,7 @@ fn busy(camera: Value) -> Value {
     })
 }
 
-fn noise() -> Files {
+pub fn noise() -> Files {
     let byte = |x: u32, y: u32| u8::try_from((x * x * 7 + y * 13 + x * y) % 256).expect("a byte");
     file("noise.png", png(37, 21, |x, y| [byte(x, y), byte(y, x), byte(x + y, 3), 255]))
 }
@@ -126,7 +126,7 @@ pub fn textures_shadows_and_samples_are_the_same_to_the_byte(ledger: &mut Ledger
 }
 
 /// The busy scene with everything transparent in its own way.
-fn glassy() -> Value {
+pub fn glassy() -> Value {
     let mut document = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
     document["materials"]["shiny"]["opacity"] = json!(0.7);
     document["materials"]["shiny"]["double_sided"] = json!(true);
@@ -191,8 +191,22 @@ pub fn radiance_depth_and_codes_are_the_same_to_the_byte(ledger: &mut Ledger) {
     all_the_same(ledger, "all at once", &scene, &requests.collect::<Vec<_>>());
 }
 
-fn both(request: &FrameRequest, count: u32) -> FrameRequest {
+pub fn both(request: &FrameRequest, count: u32) -> FrameRequest {
     sized(131, 77, FrameRequest { samples: Some(count), ..request.clone() })
+}
+
+/// Post effects, from the document to the bytes; 8 samples have smaller tiles.
+pub fn pictures_with_effects_are_the_same_to_the_byte(ledger: &mut Ledger) {
+    let mut document = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
+    document["post"] = json!([
+        { "type": "vignette" }, { "type": "bloom" }, { "type": "tonemap" }, { "type": "fxaa" },
+        { "type": "blur", "radius": 1.5 }, { "type": "grayscale", "amount": 0.4 },
+    ]);
+    for (background, count) in [(json!({ "type": "sky" }), 1), (json!({ "type": "transparent" }), 8)] {
+        document["environment"]["background"] = background;
+        let scene = scene_with(&document, &noise());
+        all_the_same(ledger, "effects", &scene, &[both(&output(Output::Color), count)]);
+    }
 }
 
 /// The catalogue itself, with other engines than that of the run: what holds for one holds for all.

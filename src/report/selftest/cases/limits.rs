@@ -1,6 +1,5 @@
-//! Sizes at and over their bounds, and files at the edge of what a parser takes (B47, B48).
+//! Sizes at and over their bounds (B48).
 
-use crate::import::obj::{self, ObjOptions};
 use crate::limits::Limits;
 use crate::plan::{FrameRequest, Plan, PlanError};
 use crate::report::selftest::Ledger;
@@ -45,39 +44,5 @@ pub fn pictures_are_planned_up_to_their_limits_and_not_beyond(ledger: &mut Ledge
         let faults = Document::from_json(&json!({ "render": { "width": size } })).expect_err("no size");
         let is_named = faults[0].pointer == "/render/width";
         ledger.holds(&size.to_string(), "sizes not refused by name", is_named);
-    }
-}
-
-/// B47: a mesh, or an error that names the line.
-pub fn odd_models_are_read_or_refused_by_line(ledger: &mut Ledger) {
-    let refused = [
-        ("v 0 0 0\nf 0 1 1\n", 2),
-        ("v 0 0 0\n\nf 1 1 2\n", 3),
-        ("v 0 0 0\nv 1 0 0\nf 1 2 -3\n", 3),
-        ("v 1e400 0 0\n", 1),
-        ("v 0 0 0\nv 0 nan 0\n", 2),
-        ("v 0 0 0\nv 1 0\n", 2),
-    ];
-    let wrong = refused.iter().filter(|(text, line)| {
-        let error = obj::read(text.as_bytes(), &ObjOptions::default()).err();
-        error.and_then(|error| error.line()) != Some(*line)
-    });
-    ledger.none_of("", "faults at another line", wrong.count(), refused.len());
-
-    let concave = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n";
-    let read = [
-        ("negative indices", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n".to_owned(), 1),
-        ("CRLF and BOM", "\u{feff}v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n".to_owned(), 1),
-        ("a continued line", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n2 3\n".to_owned(), 1),
-        ("a concave pentagon", concave.to_owned(), 3),
-        (
-            "a line of 100 MB",
-            format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n# {}\nf 1 2 3\n", "x".repeat(100_000_000)),
-            1,
-        ),
-    ];
-    for (case, text, triangles) in &read {
-        let read = obj::read(text.as_bytes(), &ObjOptions::default()).map(|model| model.mesh.triangles.len());
-        ledger.holds(case, "models read otherwise", read.is_ok_and(|read| read == *triangles));
     }
 }

@@ -5,11 +5,12 @@ use crate::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
 use crate::pipeline::shade::BLOCK;
 use crate::pipeline::shade::texture::{Coordinates, sample};
 use crate::report::selftest::Ledger;
-use crate::report::selftest::instruments::closed_form;
-use crate::report::selftest::instruments::draw::{file, level, levels, png};
+use crate::report::selftest::instruments::closed_form::{self, Camera};
+use crate::report::selftest::instruments::draw::{Picture, file, level, levels, png};
 use crate::report::selftest::instruments::worst::Worst;
 use crate::scene::{Document, compile};
 use fearless_simd::Level;
+use glam::DVec3;
 use serde_json::json;
 use std::sync::Arc;
 
@@ -209,4 +210,39 @@ fn without_texels(mut png: Vec<u8>) -> Vec<u8> {
     let checksum = crc32fast::hash(&png[12..29]);
     png[29..33].copy_from_slice(&checksum.to_be_bytes());
     png
+}
+
+/// B24: where a pixel spans the whole texture many times over, it shows the mean of the texture in linear
+/// light, up to the horizon.
+pub fn a_floor_to_the_horizon_fades_to_its_mean(ledger: &mut Ledger) {
+    let camera = Camera::perspective([0.0, 1.0, 0.0], [0.3, 0.8, -1.0], 60.0, 160, 120);
+    let document = json!({
+        "camera": camera.document(),
+        "environment": { "background": { "type": "color", "color": "#f00" } },
+        "lights": {},
+        "textures": { "t": { "checker": { "colors": ["#000", "#fff"], "cells": 8 } } },
+        "materials": { "m": { "shading": "unlit", "diffuse": [1, 1, 1], "diffuse_map": "t" } },
+        "meshes": { "floor": { "type": "plane", "size": [2e5, 2e5], "uv_repeat": [1e5, 1e5] } },
+        "instances": { "floor": { "mesh": "floor", "material": "m" } },
+        "render": camera.render(1),
+    });
+    let mean = 255.0 * closed_form::encode(0.5);
+    let on_floor = |x: u32, y: f64| {
+        let ray = camera.ray(f64::from(x) + 0.5, y);
+        closed_form::hit_plane(ray, DVec3::ZERO, DVec3::Y).map(|s| ray.at(s))
+    };
+    let (mut worst, mut looked) = (Worst::default(), 0);
+    for (x, y, pixel) in Picture::of(&document).iter() {
+        let [above, here, below] = [0.0, 0.5, 1.0].map(|part| on_floor(x, f64::from(y) + part));
+        let (Some(here), Some(below)) = (here, below) else { continue };
+        let is_inside = here.abs().max_element() < 0.9e5;
+        // A turn of the texture is two units of the floor.
+        let turns = above.map_or(f64::INFINITY, |above| (above - below).length() / 2.0);
+        if is_inside && turns > 4.0 {
+            looked += 1;
+            worst.note((f64::from(pixel[0]) - mean).abs());
+        }
+    }
+    ledger.at_least("", "pixels of the far field", f64::from(looked), 500.0);
+    ledger.at_most("", "difference from the mean in codes", worst.largest(), 1.0);
 }

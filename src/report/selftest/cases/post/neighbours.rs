@@ -39,6 +39,10 @@ pub fn a_blur_is_a_gaussian_and_keeps_what_is_constant(ledger: &mut Ledger) {
         let case = format!("radius {radius}");
         ledger.at_most(&case, "difference from f64", largest_difference(&drawn, &expected), 1e-6);
 
+        if radius == 0.0 {
+            ledger.at_most("", "change by a blur of radius 0", largest_difference(&drawn, &planes), 0.0);
+        }
+
         let constants: Planes =
             (0..4).map(|_| vec![f64::from(random.magnitude(1e-30, 6e4) as f32); WIDTH * HEIGHT]).collect();
         let drawn = run(&effect, &constants, &work());

@@ -432,3 +432,20 @@ pub fn flat_and_pointlike_scenes_under_a_lamp_are_lit_and_finite(ledger: &mut Le
         }
     }
 }
+
+/// B39 around a lamp: lamps of every size, with casters from 10⁻⁶ away.
+pub fn soft_shadows_of_lamps_lie_between_light_and_dark_whatever_blocks(ledger: &mut Ledger) {
+    let mut rng = ledger.random(0xb39);
+    for radius in [0.0, 1e-30, 0.05, 10.0, 1e30] {
+        for distance in [1e-6, 1e-3, 1.0, 30.0] {
+            let shadow = json!({ "filter": "pcss", "resolution": 64, "light_radius": radius });
+            let map = cage(&[(DVec3::X * distance, distance), (DVec3::Y * 3.0, 1.0)], &shadow);
+            let mut places = vec![DVec3::ZERO, DVec3::X * distance, DVec3::X * distance * 0.5];
+            places.extend((0..500).map(|_| rng.direction() * rng.magnitude(1e-9, 1e9)));
+            let seen = visible(&map, &places);
+            let beyond = seen.iter().filter(|seen| !(0.0..=1.0).contains(*seen)).count();
+            let setting = format!("lamp {radius:e}, caster {distance:e} away");
+            ledger.none_of(&setting, "visibilities that are not in 0 to 1", beyond, seen.len());
+        }
+    }
+}

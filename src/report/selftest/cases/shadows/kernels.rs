@@ -1,9 +1,11 @@
 //! Filters with a kernel: PCF and PCSS.
 
-use super::{SLOPES, lit_plane, setting};
+use super::{SLOPES, lit_plane, setting, visible};
+use crate::pipeline::shadow::render_maps;
+use crate::plan::FrameRequest;
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::box_on_floor::BoxOnFloor;
-use crate::report::selftest::instruments::draw::Picture;
+use crate::report::selftest::instruments::draw::{Picture, plan, scene, work};
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -189,6 +191,37 @@ pub fn casters_far_before_the_receivers_throw_filtered_shadows(ledger: &mut Ledg
         // The penumbra is a tenth of a unit wide.
         for kernel in [Kernel::Pcf(3.0), Kernel::Pcss(0.1 / height)] {
             compare_as_cast(ledger, &format!("caster {height:e} above"), &setting, kernel);
+        }
+    }
+}
+
+/// B39: lights of every size, and blockers from next to the light to the receiver itself.
+pub fn soft_shadows_lie_between_light_and_dark_whatever_blocks(ledger: &mut Ledger) {
+    let depths = [-1e30, -1.0, 0.0, 0.1, 0.5, 0.9, 1.0, 1.0 + f32::EPSILON, 5.0, 1e30, f32::NAN];
+    let across = [-1e30, -90.0, -50.0, -20.0, -0.5, 0.0, 0.5, 20.0, 49.999, 1e30, f32::INFINITY];
+    for light in [0.0, 1e-30, 0.05, 1.0, 1e3, 1e30] {
+        for search in [Value::Null, json!(0), json!(9), json!(1000)] {
+            let mut document = BoxOnFloor { resolution: 100, ..setting() }.document();
+            let mut shadow = json!({ "filter": "pcss", "resolution": 100, "light_radius": light });
+            if !search.is_null() {
+                shadow["search_radius"] = search.clone();
+            }
+            document["lights"]["sun"]["shadow"] = shadow;
+            let plan = plan(&scene(&document), &FrameRequest::default());
+            let maps = render_maps(&plan.shadows, &work()).expect("nobody cancels");
+            let (mut beyond, mut looked) = (0, 0);
+            for place in across.iter().flat_map(|&x| across.iter().map(move |&y| [x, y])) {
+                for depth in depths {
+                    let seen = visible(&maps[0], [place[0], place[1], depth]);
+                    looked += 1;
+                    beyond += usize::from(!(0.0..=1.0).contains(&seen));
+                }
+            }
+            let setting = format!("light {light:e}, search {search}");
+            ledger.none_of(&setting, "visibilities that are not in 0 to 1", beyond, looked);
+            // Before all casters nothing blocks.
+            let is_lit = across.iter().all(|&x| visible(&maps[0], [x, 0.0, 1.0]) == 1.0);
+            ledger.holds(&setting, "less than wholly lit without a blocker", is_lit);
         }
     }
 }

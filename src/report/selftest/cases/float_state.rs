@@ -1,0 +1,77 @@
+//! What a thread or a compiler could change about floats (B50).
+
+use super::determinism::{both, busy, glassy, noise};
+use crate::pipeline::Pixels;
+use crate::plan::{FrameRequest, Output};
+use crate::report::selftest::Ledger;
+use crate::report::selftest::instruments::draw::{frame, output, pool, scene_with};
+use serde_json::{Value, json};
+use std::hint::black_box;
+
+/// The least normal f32 is 2⁻¹²⁶: 2⁻¹⁴⁰ and its half are subnormal, or lost.
+fn keeps_subnormals() -> bool {
+    // The least of all is 2⁻¹⁴⁹, the lowest bit.
+    let tiny = black_box(f32::from_bits(1 << 9));
+    tiny * black_box(0.5) == f32::from_bits(1 << 8)
+}
+
+/// A thread that flushes subnormal numbers to 0 draws other depths; no compiler sets that, but libraries do.
+pub fn every_thread_keeps_subnormal_numbers(ledger: &mut Ledger) {
+    for threads in [1, 2, 3, 7, 16] {
+        let kept = pool(threads).broadcast(|_| keeps_subnormals());
+        let lost = kept.iter().filter(|kept| !**kept).count();
+        ledger.none_of(&format!("{threads} threads"), "threads where 2⁻¹⁴⁰ · 0.5 is lost", lost, threads);
+    }
+    ledger.holds("the thread of a check", "threads where 2⁻¹⁴⁰ · 0.5 is lost", keeps_subnormals());
+}
+
+/// First half of the BLAKE3 hash of each picture, the same in every build: with and without optimisation,
+/// with and without assertions.
+const HASHES: [(&str, &str); 6] = [
+    ("colours", "94134d0c6d85d7412b58da75db3a1ccf"),
+    ("transparency", "c2679f18ced21f8487d67033802c4af7"),
+    ("radiance", "319012c4bfd26c6d65af5447767c2be9"),
+    ("depth", "3a05bf23238bffbaec113f68684f0410"),
+    ("normals", "734366105f280aa433fd7363733028ea"),
+    ("effects", "9b7db5fccbb2a50d21b21402022a95f8"),
+];
+
+fn hash(pixels: &Pixels) -> String {
+    let bytes: Vec<u8> = match pixels {
+        Pixels::Rgba8 { pixels, .. } => pixels.as_flattened().to_vec(),
+        Pixels::Gray16(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+        Pixels::Rgba32F { pixels, .. } => {
+            pixels.as_flattened().iter().flat_map(|value| value.to_bits().to_le_bytes()).collect()
+        }
+    };
+    blake3::hash(&bytes).to_hex()[..32].to_owned()
+}
+
+/// The pictures that [`HASHES`] are of, in their order.
+fn pictures() -> [(Value, FrameRequest); 6] {
+    let busy = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
+    let mut effects = busy.clone();
+    effects["post"] =
+        json!([{ "type": "bloom" }, { "type": "tonemap", "operator": "aces" }, { "type": "fxaa" }]);
+    let of = |what: Output, count: u32| both(&output(what), count);
+    [
+        (busy.clone(), of(Output::Color, 4)),
+        (glassy(), of(Output::Color, 8)),
+        (glassy(), of(Output::Radiance, 4)),
+        (busy.clone(), of(Output::Depth, 1)),
+        (busy, of(Output::Normal, 2)),
+        (effects, of(Output::Color, 1)),
+    ]
+}
+
+/// A release build draws what a debug build draws.
+pub fn every_build_draws_the_same(ledger: &mut Ledger) {
+    for ((name, expected), (document, request)) in HASHES.into_iter().zip(pictures()) {
+        let drawn = hash(&frame(&scene_with(&document, &noise()), &request).pixels);
+        ledger.holds(
+            &format!("hash {drawn}"),
+            &format!("{name} unlike those of other builds"),
+            drawn == expected,
+        );
+    }
+}
