@@ -3,6 +3,7 @@
 //! No label has values without a bound: those of every family are words of the program or routes of its
 //! router.
 
+use crate::plan::{Elision, Tally, Unit};
 use prometheus::core::Collector;
 use prometheus::{
     Histogram, HistogramOpts, HistogramVec, IntCounter, IntCounterVec, IntGauge, Opts, Registry, TextEncoder,
@@ -45,6 +46,8 @@ pub struct Metrics {
     pass_seconds: HistogramVec,
     queue_wait_seconds: Histogram,
     jobs_rejected: IntCounterVec,
+    work: IntCounterVec,
+    work_spared: IntCounterVec,
     http_requests: IntCounterVec,
     /// Jobs whose client left, or whose time was over, before they were done.
     pub jobs_cancelled: IntCounter,
@@ -88,6 +91,8 @@ impl Default for Metrics {
                 )),
             ),
             jobs_rejected: counters("jobs_rejected_total", "Jobs that were not taken", &["reason"]),
+            work: counters("work_total", "Work of the frames drawn", &["unit"]),
+            work_spared: counters("work_spared_total", "Work that frames were spared", &["elision"]),
             http_requests: counters("http_requests_total", "Requests answered", &["route", "status"]),
             jobs_cancelled: counter("jobs_cancelled_total", "Jobs ended before they were done"),
             stream_watchers: gauge("stream_watchers", "Who watches a stream"),
@@ -119,6 +124,8 @@ impl Metrics {
         for pass in PASSES {
             self.pass_seconds.with_label_values(&[pass]);
         }
+        Unit::ALL.iter().for_each(|unit| self.work.with_label_values(&[unit.name()]).reset());
+        Elision::ALL.iter().for_each(|elision| self.work_spared.with_label_values(&[elision.name()]).reset());
     }
 
     /// Frames drawn.
@@ -139,6 +146,13 @@ impl Metrics {
             Rejection::Closing => "closing",
         };
         self.jobs_rejected.with_label_values(&[reason])
+    }
+
+    /// Counts the work of a frame, and what it was spared.
+    pub fn count_work(&self, tally: &Tally) {
+        tally.work().for_each(|(unit, amount)| self.work.with_label_values(&[unit]).inc_by(amount));
+        let spared = tally.savings();
+        spared.for_each(|(elision, amount)| self.work_spared.with_label_values(&[elision]).inc_by(amount));
     }
 
     /// Notes what each pass took, in milliseconds. What is no pass is left out.
@@ -185,6 +199,8 @@ mod tests {
             "rasterd_frames_rendered_total{kind=\"stream\"} 0",
             "rasterd_pass_seconds_count{pass=\"shade\"} 0",
             "rasterd_queue_wait_seconds_count 0",
+            "rasterd_work_total{unit=\"taps\"} 0",
+            "rasterd_work_spared_total{elision=\"decided_taps\"} 0",
             "rasterd_jobs_rejected_total{reason=\"queue_full\"} 0",
             "rasterd_jobs_cancelled_total 0",
             "rasterd_queue_depth 0",

@@ -5,7 +5,7 @@ mod simd;
 pub use simd::Simd;
 
 use crate::limits::Limits;
-use crate::plan::request::Elide;
+use crate::plan::Elisions;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::num::NonZeroUsize;
 use std::time::Duration;
@@ -22,9 +22,9 @@ pub struct Machine {
     #[arg(long, env = "RASTERD_SIMD", value_name = "LEVEL")]
     pub simd: Option<Simd>,
 
-    /// What may be left out where the picture stays the same: all or none
-    #[arg(long, env = "RASTERD_ELIDE", value_name = "all|none", default_value = "all")]
-    pub elide: Elide,
+    /// What may be left out where the picture stays the same: all, none, or names with commas between
+    #[arg(long, env = "RASTERD_ELIDE", value_name = "all|none|LIST", default_value = "all")]
+    pub elide: Elisions,
 }
 
 /// Everything a server can be told at its start.
@@ -133,7 +133,7 @@ impl Default for Settings {
 
 impl Default for Machine {
     fn default() -> Self {
-        Self { threads: None, simd: None, elide: Elide::All }
+        Self { threads: None, simd: None, elide: Elisions::ALL }
     }
 }
 

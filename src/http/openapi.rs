@@ -79,7 +79,7 @@ pub(super) struct FrameQuery {
     orbit: Option<String>,
     /// `transparent`, `rrggbb`, or a name of the document's `backgrounds`
     background: Option<String>,
-    /// What may be left out where the picture stays the same: `all` or `none`
+    /// What may be left out where the picture stays the same: `all`, `none`, or names with commas between
     elide: Option<String>,
 }
 

@@ -3,7 +3,9 @@
 use super::problem::Problem;
 use super::query::Pairs;
 use super::{App, openapi};
-use crate::plan::{Draw, Filter, Opacity, Pass, Plan, PlannedLight, Pointwise, PostPass, ShadowPass};
+use crate::plan::{
+    Draw, Elision, Filter, Opacity, Pass, Plan, PlannedLight, Pointwise, PostPass, Saving, ShadowPass,
+};
 use crate::scene::document::words::Word;
 use crate::scene::{Lens, LightKind, Scene};
 use axum::Json;
@@ -25,6 +27,8 @@ pub(super) struct FramePlan {
     /// Passes of effects, and what rides along with them
     post: Vec<EffectNote>,
     left_out: Vec<LeftOutNote>,
+    /// What is spared on the way, in the order of the passes
+    elisions: Vec<ElisionNote>,
     /// Working memory that it takes
     bytes: u64,
 }
@@ -129,6 +133,23 @@ struct EffectNote {
 struct LeftOutNote {
     what: String,
     reason: String,
+    /// The elision that decides on it; null where the scene or the request does
+    elision: Option<&'static str>,
+    /// What that saves
+    saves: Option<String>,
+}
+
+/// An elision that the frame has use for.
+#[derive(Serialize, ToSchema)]
+struct ElisionNote {
+    /// As `elide` takes it
+    name: &'static str,
+    /// What is counted of it: the name of its work in the events of a stream
+    unit: &'static str,
+    /// What the frame would do without it
+    saves: String,
+    /// Why the picture is the same to the bit
+    exact: &'static str,
 }
 
 /// What a frame would run
@@ -156,7 +177,10 @@ impl FramePlan {
         let left_out = plan.left_out.iter().map(|left| LeftOutNote {
             what: left.part.describe(&plan.scene),
             reason: left.reason.to_string(),
+            elision: left.reason.elision().map(Elision::name),
+            saves: plan.saved_with(*left),
         });
+        let elisions = plan.savings().into_iter().map(ElisionNote::from);
         Self {
             settings: Settled::of(plan),
             camera: PlannedCamera::of(plan),
@@ -165,8 +189,15 @@ impl FramePlan {
             lights: plan.lights.iter().map(|light| LightNote::of(light, plan)).collect(),
             post: effects(plan),
             left_out: left_out.collect(),
+            elisions: elisions.collect(),
             bytes: plan.bytes(),
         }
+    }
+}
+
+impl From<Saving> for ElisionNote {
+    fn from(Saving { elision, saves }: Saving) -> Self {
+        Self { name: elision.name(), unit: elision.unit().name(), saves, exact: elision.exact() }
     }
 }
 
@@ -262,8 +293,8 @@ fn effects(plan: &Plan) -> Vec<EffectNote> {
         (!effects.is_empty()).then_some(EffectNote { effects, kind: "pointwise" })
     };
     let pass = |pass: &PostPass| {
-        let effects = vec![pass.effect.type_name()];
-        [Some(EffectNote { effects, kind: "neighbourhood" }), pointwise(&pass.then)]
+        let effect = pass.effect.as_ref().map(|effect| vec![effect.type_name()]);
+        [effect.map(|effects| EffectNote { effects, kind: "neighbourhood" }), pointwise(&pass.then)]
     };
     let passes = plan.post.passes.iter().flat_map(pass);
     std::iter::once(pointwise(&plan.post.in_tiles)).chain(passes).flatten().collect()

@@ -258,6 +258,12 @@ pub(super) struct FrameEvent {
     /// By the names of `Render-Stats`
     #[schema(value_type = BTreeMap<String, u64>)]
     counts: Map<String, Value>,
+    /// Work that was done, by its units; what was none is absent
+    #[schema(value_type = BTreeMap<String, u64>)]
+    work: Map<String, Value>,
+    /// Work that elisions spared, by their names, in the units that the plan names
+    #[schema(value_type = BTreeMap<String, u64>)]
+    spared: Map<String, Value>,
 }
 
 impl FrameEvent {
@@ -273,6 +279,8 @@ impl FrameEvent {
             bytes: picture.jpeg.len(),
             milliseconds: members(picture.timings.iter().map(|(pass, ms)| (*pass, (ms * 1e3).round() / 1e3))),
             counts: members(picture.stats.iter().copied()),
+            work: members(picture.tally.work()),
+            spared: members(picture.tally.savings()),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{Engine, JobError};
 use crate::encode::{self, Animation, Format, Zip};
 use crate::metrics::FrameKind;
 use crate::pipeline::{Cancelled, Frame, Work};
-use crate::plan::{FrameRequest, Output, Plan};
+use crate::plan::{FrameRequest, Output, Plan, Tally};
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -59,6 +59,8 @@ pub(super) struct Drawn {
     pub timings: Vec<(&'static str, f64)>,
     /// Counts, by the names of `Render-Stats`.
     pub stats: Vec<(&'static str, u64)>,
+    /// What was done, and what elisions spared.
+    pub tally: Tally,
 }
 
 /// The part of [`make`] before the encoding, for a stream.
@@ -76,7 +78,7 @@ pub(super) fn draw_one(
     let frame = making.frame(&requests[0])?;
     let mut timings = vec![("plan", milliseconds(making.planning))];
     timings.extend(making.passes);
-    Ok(Drawn { frame, timings, stats: making.stats })
+    Ok(Drawn { frame, timings, stats: making.stats, tally: making.tally })
 }
 
 /// The tag of what [`make`] makes, without making it.
@@ -127,6 +129,7 @@ struct Making<'a> {
     tag: FileTag,
     passes: Vec<(&'static str, f64)>,
     stats: Vec<(&'static str, u64)>,
+    tally: Tally,
 }
 
 impl<'a> Making<'a> {
@@ -154,6 +157,7 @@ impl<'a> Making<'a> {
             tag: FileTag::new(product),
             passes: Vec::new(),
             stats: Vec::new(),
+            tally: Tally::default(),
         }
     }
 
@@ -206,6 +210,8 @@ impl<'a> Making<'a> {
             self.engine.metrics.observe_passes(frame.timings.iter());
             frame.timings.iter().for_each(|(pass, ms)| *entry(&mut self.passes, pass) += ms);
             frame.stats.entries().iter().for_each(|(name, count)| *entry(&mut self.stats, name) += count);
+            self.engine.metrics.count_work(&frame.stats.tally);
+            self.tally.add(&frame.stats.tally);
         }
         Ok(frames)
     }

@@ -29,8 +29,8 @@ use crate::limits::Limits;
 use crate::metrics::{Metrics, Rejection};
 use crate::pipeline::{self, Hit, Order, Work};
 use crate::plan::Output;
-use crate::plan::request::{Elide, QueryFault};
-use crate::plan::{FrameRequest, Plan, PlanError};
+use crate::plan::request::QueryFault;
+use crate::plan::{Elisions, FrameRequest, Plan, PlanError, Tally};
 use crate::scene::Scene;
 use crate::settings::{Machine, Settings, Simd};
 use bytes::Bytes;
@@ -65,6 +65,7 @@ struct Encoded {
     size: [u32; 2],
     timings: Vec<(&'static str, f64)>,
     stats: Vec<(&'static str, u64)>,
+    tally: Tally,
 }
 
 /// What every job shares.
@@ -73,7 +74,7 @@ struct Engine {
     /// As many threads again, for what frames are drawn from; see [`Renderer::build`].
     builders: rayon::ThreadPool,
     level: Level,
-    elide: Elide,
+    elide: Elisions,
     limits: Limits,
     draw: Box<Draw>,
     metrics: Metrics,
@@ -237,13 +238,14 @@ impl Renderer {
         let job = tokio::task::spawn_blocking(move || {
             caught(|| {
                 let began = Instant::now();
-                let Drawn { frame, mut timings, stats } = drawn;
+                let Drawn { frame, mut timings, stats, tally } = drawn;
                 let work = engine.work(&flag);
                 let jpeg = encode::jpeg_with_comment(&frame, quality, &comment, &work)?;
                 let encode = [("encode", draw::milliseconds(began.elapsed()))];
                 engine.metrics.observe_passes(encode);
                 timings.extend(encode);
-                Ok(Encoded { jpeg: jpeg.into(), size: [frame.width, frame.height], timings, stats })
+                let size = [frame.width, frame.height];
+                Ok(Encoded { jpeg: jpeg.into(), size, timings, stats, tally })
             })
         });
         job.await.map_err(|_| JobError::Panicked)?
@@ -309,7 +311,7 @@ impl Engine {
             pool,
             builders,
             level,
-            elide: machine.elide.clone(),
+            elide: machine.elide,
             limits,
             draw,
             metrics: Metrics::default(),
@@ -318,7 +320,7 @@ impl Engine {
     }
 
     fn plan(&self, scene: &Arc<Scene>, request: &FrameRequest) -> Result<Plan, PlanError> {
-        let elide = request.elide.clone().unwrap_or_else(|| self.elide.clone());
+        let elide = request.elide.unwrap_or(self.elide);
         Plan::new(scene, &FrameRequest { elide: Some(elide), ..request.clone() }, &self.limits)
     }
 

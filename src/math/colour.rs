@@ -11,6 +11,11 @@ pub static SRGB_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|code| round_to_f32(linear_from_srgb8(u8::try_from(code).unwrap_or(u8::MAX))))
 });
 
+/// `code / 255`.
+pub static UNORM_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|code| round_to_f32(f64::from(u8::try_from(code).unwrap_or(u8::MAX)) / 255.0))
+});
+
 /// Linear value of the sRGB code `c / 255` (IEC 61966-2-1), in f64.
 #[must_use]
 pub fn linear_from_srgb8(c: u8) -> f64 {

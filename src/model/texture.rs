@@ -3,6 +3,7 @@
 pub mod checker;
 pub(in crate::model) mod mips;
 
+use crate::math::colour::{SRGB_DECODE, UNORM_DECODE};
 use std::mem::size_of_val;
 use std::sync::Arc;
 
@@ -133,6 +134,31 @@ impl Texture {
         let (constant, least) = (image.constant(), image.least());
         let (scale, offset) = ([1.0; 2], [0.0; 2]);
         Self { image, color_space, mips: Arc::new(mips), filter, wrap, scale, offset, constant, least }
+    }
+
+    /// A linear texture that is `texel` everywhere.
+    #[must_use]
+    pub fn of_one_texel(texel: [u8; 4]) -> Self {
+        let image = Image { width: 1, height: 1, texels: vec![texel] };
+        Self::new(Arc::new(image), ColorSpace::Linear, Filter::Trilinear, [Wrap::Repeat; 2])
+    }
+
+    /// How the codes of red, green and blue of level 0 are decoded.
+    #[must_use]
+    pub fn decode(&self) -> &'static [f32; 256] {
+        match self.color_space {
+            ColorSpace::Srgb => &SRGB_DECODE,
+            ColorSpace::Linear => &UNORM_DECODE,
+        }
+    }
+
+    /// What it reads as wherever it is sampled, in linear light, if that is the same to the bit everywhere:
+    /// mips of one colour are that colour but for their rounding.
+    #[must_use]
+    pub fn factor(&self) -> Option<[f32; 4]> {
+        let [r, g, b, a] = self.constant.filter(|_| self.mips.is_empty())?.map(usize::from);
+        let decode = self.decode();
+        Some([decode[r], decode[g], decode[b], UNORM_DECODE[a]])
     }
 
     /// The same texture under scaled and moved coordinates; texels and mips are shared.

@@ -33,7 +33,7 @@ pub use stats::{Stats, Timings};
 pub use target::{Frame, Pixels};
 pub use work::{Cancelled, Order, Work};
 
-use crate::plan::{Output, Plan};
+use crate::plan::{Output, Plan, Tally};
 use geometry::bin::TileGrid;
 use geometry::{Bins, Counts};
 use picture::Picture;
@@ -105,6 +105,7 @@ struct Draft<'a> {
     shadow_maps: Vec<ShadowMap>,
     /// Of the camera's pass, if it is this frame's.
     counts: Counts,
+    tally: Tally,
     timings: Timings,
 }
 
@@ -113,13 +114,14 @@ impl<'a> Draft<'a> {
         let effects = if plan.output == Output::Color { effects } else { &[] };
         let (chain, counts, timings) =
             (Chain::new(&plan.post, effects), Counts::default(), Timings::default());
-        Self { plan, chain, shadow_maps: Vec::new(), counts, timings }
+        Self { plan, chain, shadow_maps: Vec::new(), counts, tally: plan.tally(), timings }
     }
 
     fn render_shadow_maps(&mut self, work: &Work) -> Result<(), Cancelled> {
         if !self.plan.shadows.is_empty() {
             let began = Instant::now();
-            self.shadow_maps = shadow::render_maps(&self.plan.shadows, work)?;
+            self.shadow_maps = shadow::render_maps(&self.plan.shadows, self.plan.elide, work)?;
+            self.shadow_maps.iter().for_each(|map| self.tally.add(&map.tally()));
             self.timings.push("shadow", milliseconds(began));
         }
         Ok(())
@@ -130,26 +132,21 @@ impl<'a> Draft<'a> {
         let began = Instant::now();
         let bins = transform_clip_and_bin(self.plan, others, work)?;
         self.counts = bins.counts;
+        self.tally.add(&bins.tally);
         if !self.plan.items.is_empty() {
             self.timings.push("geometry", milliseconds(began));
         }
         Ok(bins)
     }
 
-    fn finish(
-        mut self,
-        picture: Picture,
-        shared: &Shared,
-        shaded: u64,
-        work: &Work,
-    ) -> Result<Frame, Cancelled> {
+    fn finish(mut self, picture: Picture, shared: &Shared, work: &Work) -> Result<Frame, Cancelled> {
         let mut pixels = picture.finish(self.plan, shared, &self.chain, &mut self.timings, work)?;
         if self.plan.is_resampled() {
             let began = Instant::now();
             pixels = resample::to_size(pixels, self.plan, work)?;
             self.timings.push("resample", milliseconds(began));
         }
-        let stats = Stats::new(self.counts, shaded, self.plan);
+        let stats = Stats::new(self.counts, self.tally, self.plan);
         Ok(Frame::new(self.plan, pixels, stats, self.timings))
     }
 }
@@ -175,7 +172,8 @@ fn draw_tiles(mut drafts: Vec<Draft>, bins: &Bins, work: &Work) -> Result<Vec<Fr
     let mut frames = Vec::with_capacity(plans.len());
     for (((mut draft, picture), shared), times) in drafts.into_iter().zip(pictures).zip(&shared).zip(times) {
         draft.timings.push_tiles(rate, &times);
-        frames.push(draft.finish(picture, shared, times.shaded, work)?);
+        draft.tally.add(&times.tally);
+        frames.push(draft.finish(picture, shared, work)?);
     }
     Ok(frames)
 }
@@ -193,6 +191,7 @@ fn share<'a>(plan: &'a Plan, bins: &'a Bins, maps: &'a [ShadowMap]) -> Shared<'a
             maps,
             view: &plan.view,
             anchor,
+            elide: plan.elide,
         },
         frames: plan.shadows.iter().map(shadow::frame).collect(),
         background: sky::Background::new(&plan.background, &plan.view),
@@ -209,7 +208,7 @@ fn transform_clip_and_bin(plan: &Plan, others: &[Plan], work: &Work) -> Result<B
     let most = counts.iter().fold(1, |most, &count| most.max(count));
     let all: Vec<[i32; 2]> = counts.iter().flat_map(|&count| samples::pattern(count)).copied().collect();
     let grid = TileGrid::new(&plan.view, tiles::tile_shift(most), &all);
-    geometry::run(&plan.items, &plan.view, grid, work)
+    geometry::run(&plan.items, &plan.view, grid, plan.elide, work)
 }
 
 fn milliseconds(since: Instant) -> f64 {

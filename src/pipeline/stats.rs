@@ -1,10 +1,10 @@
 //! What a frame cost and what it did.
 
 use super::geometry::Counts;
-use crate::plan::Plan;
+use crate::plan::{Elision, Plan, Tally, Unit};
 use std::time::Instant;
 
-/// Seconds and counts of one tile, or of all of them added up.
+/// Seconds and work of one tile, or of all of them added up.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TileTimes {
     /// Coverage, depth, and the list of fragments.
@@ -15,8 +15,8 @@ pub struct TileTimes {
     pub sky: f64,
     /// Samples to pixels to bytes.
     pub resolve: f64,
-    /// Fragments shaded.
-    pub shaded: u64,
+    /// What was done, and what was spared.
+    pub tally: Tally,
 }
 
 impl TileTimes {
@@ -32,7 +32,7 @@ impl TileTimes {
         self.shade += o.shade;
         self.sky += o.sky;
         self.resolve += o.resolve;
-        self.shaded += o.shaded;
+        self.tally.add(&o.tally);
     }
 }
 
@@ -41,29 +41,38 @@ impl TileTimes {
 pub struct Stats {
     /// Of the camera's pass; nothing for a frame that shares the pass of one before it.
     pub geometry: Counts,
-    /// Fragments shaded.
-    pub shaded: u64,
     /// Shadow maps drawn; each face around a point light is one.
     pub shadow_maps: u64,
+    /// What all passes did, and what elisions spared them.
+    pub tally: Tally,
 }
 
 impl Stats {
-    pub(super) fn new(geometry: Counts, shaded: u64, plan: &Plan) -> Self {
+    pub(super) fn new(geometry: Counts, tally: Tally, plan: &Plan) -> Self {
         let shadow_maps = plan.shadows.iter().map(|pass| pass.faces().len() as u64).sum();
-        Self { geometry, shaded, shadow_maps }
+        Self { geometry, shadow_maps, tally }
+    }
+
+    /// Fragments shaded.
+    #[must_use]
+    pub fn shaded(&self) -> u64 {
+        self.tally.done(Unit::Fragments)
     }
 
     /// The entries of a `Render-Stats` header.
     #[must_use]
-    pub fn entries(&self) -> [(&'static str, u64); 6] {
+    pub fn entries(&self) -> [(&'static str, u64); 9] {
         let g = &self.geometry;
         [
             ("triangles", g.triangles),
             ("culled", g.outside + g.culled + g.degenerate + g.no_sample),
             ("clipped", g.clipped),
             ("drawn", g.drawn),
-            ("shaded", self.shaded),
+            ("shaded", self.shaded()),
             ("shadow_maps", self.shadow_maps),
+            ("lookups", self.tally.done(Unit::Lookups)),
+            ("taps", self.tally.done(Unit::Taps)),
+            ("taps_spared", self.tally.spared(Elision::DecidedTaps)),
         ]
     }
 }

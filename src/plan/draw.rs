@@ -125,6 +125,21 @@ pub struct Surface {
     pub receives_shadow: bool,
     /// Whether whole turns of u or v change nothing, because every map repeats or mirrors.
     pub periodic_uv: bool,
+    /// What each of its fragments is spared.
+    pub spared: Spared,
+}
+
+/// What elisions spare each fragment of a surface, in their units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Spared {
+    /// Maps that are not there.
+    pub absent_maps: u64,
+    /// Maps of one colour that became factors.
+    pub constant_maps: u64,
+    /// Relief maps that tilt nothing.
+    pub flat_relief: u64,
+    /// Highlights of no colour, under each light.
+    pub highlights: u64,
 }
 
 /// A highlight.
@@ -159,7 +174,29 @@ pub struct Heights {
     pub scale: f32,
 }
 
+impl Relief {
+    /// How many maps are read.
+    #[must_use]
+    pub fn maps(&self) -> u64 {
+        u64::from(self.normal_map.is_some()) + u64::from(self.heights.is_some())
+    }
+}
+
 impl Surface {
+    /// How many maps of colours are read.
+    #[must_use]
+    pub fn color_maps(&self) -> u64 {
+        let specular = self.specular.as_ref().and_then(|s| s.map.as_ref());
+        let maps = [self.diffuse_map.as_ref(), self.emissive_map.as_ref(), specular];
+        maps.iter().flatten().count() as u64
+    }
+
+    /// How many maps of its relief are read.
+    #[must_use]
+    pub fn relief_maps(&self) -> u64 {
+        self.relief.as_ref().map_or(0, Relief::maps)
+    }
+
     /// Whether any map is read.
     #[must_use]
     pub fn needs_uv(&self) -> bool {

@@ -1,7 +1,7 @@
 //! What a plan leaves out, and why. It is noted in numbers where it is decided, on the way of every frame;
 //! words are made of it when someone asks.
 
-use super::Output;
+use super::{Elision, Output};
 use crate::scene::Scene;
 use crate::scene::document::FACES;
 use std::fmt::{Display, Formatter};
@@ -130,6 +130,33 @@ impl Part {
             Self::Samples => "samples".to_owned(),
             Self::RenderScale => "render scale".to_owned(),
             Self::View => "view of the camera".to_owned(),
+        }
+    }
+}
+
+impl Reason {
+    /// The elision that decides on it; `None`: the scene or the request does.
+    #[must_use]
+    pub fn elision(self) -> Option<Elision> {
+        match self {
+            Self::OutsideOfTheView => Some(Elision::OutsideInstances),
+            Self::SwitchedOff | Self::Black | Self::NothingLit => Some(Elision::DarkLights),
+            Self::NothingReceives => Some(Elision::UnseenShadows),
+            Self::NoCasterThere | Self::NoReceiverThere => Some(Elision::CubeSides),
+            Self::NoCurve | Self::NoAmount | Self::NoIntensity | Self::Identity | Self::TooSmall => {
+                Some(Elision::NeutralEffects)
+            }
+            Self::Hidden
+            | Self::NoTriangles
+            | Self::Clear
+            | Self::NoShadows
+            | Self::NothingCasts
+            | Self::NothingBehind
+            | Self::CastsNone
+            | Self::ShadesNothing
+            | Self::Data(_)
+            | Self::ViewsOfLights
+            | Self::BeforePost => None,
         }
     }
 }

@@ -4,6 +4,7 @@
 //! nothing can fail but cancellation.
 
 mod draw;
+mod elide;
 mod etag;
 mod left_out;
 pub mod opacity;
@@ -11,12 +12,14 @@ mod passes;
 mod post;
 pub mod request;
 mod resampling;
+mod savings;
 mod shadow;
 mod surface;
 mod variant;
 mod view;
 
-pub use draw::{Draw, Heights, Item, Relief, Slot, Specular, Surface};
+pub use draw::{Draw, Heights, Item, Relief, Slot, Spared, Specular, Surface};
+pub use elide::{Elision, Elisions, Tally, Unit};
 pub use left_out::{LeftOut, Part, Reason};
 pub use opacity::{Alpha, AlphaTest, ItemTest, Opacity, Transparency};
 pub use passes::Pass;
@@ -25,6 +28,7 @@ pub use post::{
 };
 pub use request::{FrameRequest, Knobs, Output, QueryFault};
 pub use resampling::{AxisTaps, Resampling};
+pub use savings::Saving;
 pub use shadow::{CasterTest, Face, Filter, Maps, Pcss, ShadowPass, WIDEST_TANGENT, orthonormal_basis};
 
 use crate::limits::Limits;
@@ -69,6 +73,8 @@ pub struct Plan {
     pub post: PostChain,
     /// Distances that 0 and 65535 stand for in `output=depth`.
     pub depth_range: Option<[f64; 2]>,
+    /// What may be left out where the picture stays the same.
+    pub elide: Elisions,
     /// What it goes without, of all that the scene and the request ask for.
     pub left_out: Vec<LeftOut>,
     /// What overrides the shading of its materials.
@@ -165,6 +171,12 @@ impl Plan {
             background: if is_shaded { background } else { Background::Color(Vec3::ZERO) },
             post: PostChain::default(),
             depth_range: (request.output == Output::Depth).then(|| view::depth_range(&camera, bounds)),
+            // What shows the work of a frame shows that of the frame as it is drawn.
+            elide: if request.output.shows_work() {
+                Elisions::ALL
+            } else {
+                request.elide.unwrap_or_default()
+            },
             left_out: Vec::new(),
             shading: request.shading.or(scene.render.shading),
             knobs,
@@ -212,7 +224,8 @@ impl Plan {
             Output::Color => {
                 let drawn = [self.view.width, self.view.height];
                 let scale = f64::from(drawn[1]) / f64::from(self.size[1]);
-                self.post = PostChain::settle(effects, drawn, scale, &mut self.left_out);
+                let (elide, left_out) = (self.post_elisions(), &mut self.left_out);
+                self.post = PostChain::settle(effects, drawn, scale, elide, left_out);
                 return;
             }
             Output::Radiance => Reason::BeforePost,
@@ -220,6 +233,17 @@ impl Plan {
         };
         let parts = (0..effects.len()).map(Part::Effect);
         self.left_out.extend(parts.map(|part| LeftOut { part, reason }));
+    }
+
+    /// What of its effects may be left out. Over a transparent background every pass divides by alpha and
+    /// multiplies again, which rounds: there it is not the same in every bit whether one runs.
+    fn post_elisions(&self) -> Elisions {
+        match self.background {
+            Background::Transparent => {
+                self.elide.with(Elision::NeutralEffects).with(Elision::PointwisePasses)
+            }
+            _ => self.elide,
+        }
     }
 
     /// Notes what a picture of data does not show.
@@ -269,7 +293,7 @@ impl Plan {
         }
         let mut placed = Item::new(&self.scene, instance, self.t, Vec::new());
         let bounds = placed.bounds().ok_or(Reason::NoTriangles)?;
-        if !view::reaches(&self.view, bounds) {
+        if self.elide.contains(Elision::OutsideInstances) && !view::reaches(&self.view, bounds) {
             return Err(Reason::OutsideOfTheView);
         }
         placed.slots = (0..).zip(&instance.materials).map(|(slot, _)| self.add_draw(index, slot)).collect();
@@ -291,8 +315,9 @@ impl Plan {
         let transparency = opacity::of_output(&material, self.output)?;
         let (mesh, tangents) = (scene.mesh(of), scene.tangents(of));
         let (receives, shading) = (of.receives_shadow, self.shading);
+        let (output, elide) = (self.output, self.elide);
         let surface =
-            surface::settle(&material, mesh, tangents, receives, shading, self.output, &transparency);
+            surface::settle(&material, mesh, tangents, receives, shading, output, elide, &transparency);
         let cull = if material.double_sided { Cull::None } else { scene.render.cull };
         let opacity = transparency.opacity();
         let (item, draw) = (number(self.items.len()), number(self.draws.len()));
@@ -308,7 +333,8 @@ impl Plan {
         let receives = self.draws.iter().any(|draw| draw.surface.receives_shadow && draw.surface.lit);
         let mut participants = None;
         for (index, light) in (0..).zip(&scene.lights) {
-            if let Some(reason) = self.why_dark(light, is_lit) {
+            let dark = self.why_dark(light, is_lit);
+            if let Some(reason) = dark.filter(|reason| self.may_elide(*reason)) {
                 self.leave_out(Part::Light(index), reason);
                 continue;
             }
@@ -318,10 +344,16 @@ impl Plan {
                 pass.map_err(|reason| self.leave_out(Part::Shadow(index), reason)).ok()
             });
             let shadow = shadow.map(|pass| self.add_shadow(pass, limits)).transpose()?;
-            let (radiance, kind) = (light.radiance, light.kind);
+            let radiance = if light.enabled { light.radiance } else { Vec3::ZERO };
+            let kind = light.kind;
             self.lights.push(PlannedLight { light: index, radiance, kind, shadow });
         }
         Ok(())
+    }
+
+    /// Whether what the reason is about is left out: always, but for what an elision decides on.
+    fn may_elide(&self, reason: Reason) -> bool {
+        reason.elision().is_none_or(|elision| self.elide.contains(elision))
     }
 
     /// Why a light does not shine in the frame, if it does not.
@@ -350,7 +382,7 @@ impl Plan {
         if !self.scene.render.shadows {
             return Err(Reason::NoShadows);
         }
-        if !receives {
+        if !receives && self.may_elide(Reason::NothingReceives) {
             return Err(Reason::NothingReceives);
         }
         let rays = match light.kind {
@@ -358,7 +390,7 @@ impl Plan {
             LightKind::Point { position, .. } => shadow::Rays::FromPoint(position),
         };
         let participants = participants.get_or_insert_with(|| shadow::Participants::of(&self.scene, self.t));
-        let mut notes = shadow::Notes { light: index, left_out: &mut self.left_out };
+        let mut notes = shadow::Notes { light: index, elide: self.elide, left_out: &mut self.left_out };
         shadow::plan(participants, rays, shadow, &mut notes)
     }
 
@@ -402,6 +434,7 @@ impl Plan {
     #[must_use]
     pub fn shows_the_triangles_of(&self, other: &Self) -> bool {
         self.view == other.view
+            && self.elide == other.elide
             && self.items.len() == other.items.len()
             && self.items.iter().zip(&other.items).all(|(own, other)| own.places_the_triangles_of(other))
     }
@@ -417,6 +450,30 @@ impl Plan {
                 (Some(own), Some(other)) => own.has_the_holes_of(other),
                 (own, other) => own.is_none() && other.is_none(),
             })
+    }
+
+    /// What is known of its work before it is done: what it will do, and what it is spared.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        let mut tally = Tally::default();
+        let cubes = self.shadows.iter().filter_map(ShadowPass::cube_sides);
+        let (effects, passes) = self.post.work();
+        let texels = self.shadows.iter().map(ShadowPass::texels).sum();
+        tally.count(Unit::ShadowTexels, texels);
+        for (unit, count) in [
+            (Unit::Shadows, self.shadows.len()),
+            (Unit::Lights, self.lights.len()),
+            (Unit::CubeSides, cubes.sum()),
+            (Unit::Instances, self.items.len()),
+            (Unit::Effects, effects),
+            (Unit::Passes, passes),
+        ] {
+            tally.count(unit, count as u64);
+        }
+        let elided = self.left_out.iter().filter_map(|left| left.reason.elision());
+        elided.for_each(|elision| tally.spare(elision, 1));
+        tally.spare(Elision::PointwisePasses, self.post.fused as u64);
+        tally
     }
 
     /// What overrides the shading of its materials; what shows no light knows no override.

@@ -138,8 +138,9 @@ impl Plan {
 
     fn why_post(&self) -> Why {
         if !self.post.passes.is_empty() {
-            let passes = counted(self.post.passes.len(), "effect");
-            return Ok(format!("The whole picture is kept for what looks at the pixels around: {passes}."));
+            let (effects, passes) = self.post.work();
+            let (effects, passes) = (counted(effects, "effect"), counted_passes(passes));
+            return Ok(format!("The whole picture is kept: {effects} in {passes} over it."));
         }
         if !self.post.in_tiles.is_empty() {
             return Err(
@@ -155,7 +156,7 @@ impl Plan {
 }
 
 /// What an output shows in place of colours; `None` if it is shaded.
-fn shown_unshaded(output: Output) -> Option<&'static str> {
+pub(super) fn shown_unshaded(output: Output) -> Option<&'static str> {
     match output {
         Output::Color | Output::Radiance | Output::Normal | Output::Albedo | Output::Shaded => None,
         Output::Depth => Some("Depth is a distance: no colour is needed."),
@@ -167,7 +168,12 @@ fn shown_unshaded(output: Output) -> Option<&'static str> {
     }
 }
 
+/// `1 pass`, `2 passes`.
+fn counted_passes(count: usize) -> String {
+    format!("{count} pass{}", if count == 1 { "" } else { "es" })
+}
+
 /// `1 light`, `2 lights`.
-fn counted(count: usize, noun: &str) -> String {
+pub(super) fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }

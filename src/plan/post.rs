@@ -10,7 +10,7 @@ mod weights;
 pub use neighbourhood::{Bloom, Fxaa, Neighbourhood, Sharpen};
 pub use weights::{Gaussian, Kernel, KernelRow};
 
-use super::{LeftOut, Part, Reason};
+use super::{Elision, Elisions, LeftOut, Part, Reason};
 use crate::math::round_to_f32;
 use crate::scene::document::{PostEffect, TonemapOperator};
 
@@ -21,13 +21,15 @@ pub struct PostChain {
     pub in_tiles: Vec<Pointwise>,
     /// Each looks at the whole picture that the one before it left.
     pub passes: Vec<PostPass>,
+    /// Steps that are taken on the way of another pass, and have none of their own.
+    pub fused: usize,
 }
 
 /// One pass over the picture, and what happens to its result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PostPass {
-    /// The pass.
-    pub effect: Neighbourhood,
+    /// The pass; `None`: nothing, so that `then` has a pass of its own.
+    pub effect: Option<Neighbourhood>,
     /// On its result; after the last pass on the way to bytes.
     pub then: Vec<Pointwise>,
 }
@@ -92,33 +94,52 @@ impl PostChain {
     /// Settles `effects` for a picture of `width × height` pixels.
     #[must_use]
     pub fn new(effects: &[PostEffect], width: u32, height: u32) -> Self {
-        Self::settle(effects, [width, height], 1.0, &mut Vec::new())
+        Self::settle(effects, [width, height], 1.0, Elisions::ALL, &mut Vec::new())
     }
 
-    /// The same, with a note in `left_out` of each effect that changes nothing. A pixel of a document is
-    /// `scale` pixels of the picture.
+    /// The same without what `elide` leaves out, with a note in `left_out` of each effect that changes
+    /// nothing. A pixel of a document is `scale` pixels of the picture.
     pub(super) fn settle(
         effects: &[PostEffect],
         size: [u32; 2],
         scale: f64,
+        elide: Elisions,
         left_out: &mut Vec<LeftOut>,
     ) -> Self {
         let mut chain = Self::default();
         for (index, effect) in effects.iter().enumerate() {
-            match settle(effect, size, scale) {
-                Ok(step) => chain.push(step),
-                Err(reason) => left_out.push(LeftOut { part: Part::Effect(index), reason }),
+            match neutral(effect, scale).filter(|_| elide.contains(Elision::NeutralEffects)) {
+                Some(reason) => left_out.push(LeftOut { part: Part::Effect(index), reason }),
+                None => chain.push(step(effect, size, scale), elide),
             }
+        }
+        if chain.passes.last().is_some_and(|pass| pass.effect.is_none()) {
+            // The steps before it stay apart from the pass that writes bytes.
+            chain.passes.push(PostPass { effect: None, then: Vec::new() });
         }
         chain
     }
 
-    fn push(&mut self, step: Step) {
+    fn push(&mut self, step: Step, elide: Elisions) {
         match (step, self.passes.last_mut()) {
-            (Step::Neighbourhood(effect), _) => self.passes.push(PostPass { effect, then: Vec::new() }),
-            (Step::Pointwise(step), None) => self.in_tiles.push(step),
-            (Step::Pointwise(step), Some(pass)) => pass.then.push(step),
+            (Step::Neighbourhood(effect), _) => {
+                self.passes.push(PostPass { effect: Some(effect), then: Vec::new() });
+            }
+            (Step::Pointwise(step), _) if !elide.contains(Elision::PointwisePasses) => {
+                self.passes.push(PostPass { effect: None, then: vec![step] });
+            }
+            (Step::Pointwise(step), before) => {
+                before.map_or(&mut self.in_tiles, |pass| &mut pass.then).push(step);
+                self.fused += 1;
+            }
         }
+    }
+
+    /// How many effects it has, and how many passes over the whole picture they take.
+    pub(super) fn work(&self) -> (usize, usize) {
+        let neighbourhoods = self.passes.iter().filter(|pass| pass.effect.is_some()).count();
+        let alone = self.passes.iter().filter(|pass| pass.effect.is_none() && !pass.then.is_empty()).count();
+        (neighbourhoods + alone + self.fused, neighbourhoods + alone)
     }
 
     /// What is left to do after the last pass; nothing if there is none.
@@ -138,7 +159,12 @@ impl PostChain {
     /// Planes beside those of the picture that the passes work in.
     #[must_use]
     pub fn spare_planes(&self) -> usize {
-        self.passes.iter().map(|pass| pass.effect.spare_planes()).max().unwrap_or(0)
+        self.passes
+            .iter()
+            .filter_map(|pass| pass.effect.as_ref())
+            .map(Neighbourhood::spare_planes)
+            .max()
+            .unwrap_or(0)
     }
 
     /// Working memory of the passes: planes of f32 for red, green, blue, alpha if there is one, and
@@ -153,39 +179,45 @@ impl PostChain {
     }
 }
 
-/// An effect as a step, or why it would change nothing.
-fn settle(effect: &PostEffect, size: [u32; 2], scale: f64) -> Result<Step, Reason> {
-    let pointwise = |step| Ok(Step::Pointwise(step));
-    let neighbourhood = |effect| Ok(Step::Neighbourhood(effect));
+/// Why an effect would change nothing; `None`: it would.
+fn neutral(effect: &PostEffect, scale: f64) -> Option<Reason> {
     match effect {
-        PostEffect::Tonemap { operator: TonemapOperator::None, exposure: 1.0 } => Err(Reason::NoCurve),
-        PostEffect::Tonemap { operator, exposure } => pointwise(tonemap(*operator, factor(*exposure))),
+        PostEffect::Tonemap { operator: TonemapOperator::None, exposure: 1.0 } => Some(Reason::NoCurve),
         PostEffect::Grayscale { amount: 0.0 }
         | PostEffect::Vignette { amount: 0.0 }
-        | PostEffect::Sharpen { amount: 0.0 } => Err(Reason::NoAmount),
-        PostEffect::Grayscale { amount } => pointwise(Pointwise::Grayscale(round_to_f32(*amount))),
-        PostEffect::Vignette { amount } => pointwise(vignette(*amount, size)),
-        PostEffect::ColorMatrix { matrix } if *matrix == IDENTITY => Err(Reason::Identity),
+        | PostEffect::Sharpen { amount: 0.0 } => Some(Reason::NoAmount),
+        PostEffect::ColorMatrix { matrix } if *matrix == IDENTITY => Some(Reason::Identity),
+        PostEffect::Blur { radius } if Gaussian::new(radius * scale).is_none() => Some(Reason::TooSmall),
+        PostEffect::Bloom { intensity: 0.0, .. } => Some(Reason::NoIntensity),
+        PostEffect::Kernel { kernel } if Kernel::new(kernel).keeps_every_color() => Some(Reason::Identity),
+        _ => None,
+    }
+}
+
+/// An effect as a step.
+fn step(effect: &PostEffect, size: [u32; 2], scale: f64) -> Step {
+    match effect {
+        PostEffect::Tonemap { operator, exposure } => Step::Pointwise(tonemap(*operator, factor(*exposure))),
+        PostEffect::Grayscale { amount } => Step::Pointwise(Pointwise::Grayscale(round_to_f32(*amount))),
+        PostEffect::Vignette { amount } => Step::Pointwise(vignette(*amount, size)),
         PostEffect::ColorMatrix { matrix } => {
-            pointwise(Pointwise::ColorMatrix(matrix.map(|row| row.map(round_to_f32))))
+            Step::Pointwise(Pointwise::ColorMatrix(matrix.map(|row| row.map(round_to_f32))))
         }
-        PostEffect::Blur { radius } => Gaussian::new(radius * scale)
-            .ok_or(Reason::TooSmall)
-            .map(Neighbourhood::Blur)
-            .and_then(neighbourhood),
-        PostEffect::Bloom { intensity: 0.0, .. } => Err(Reason::NoIntensity),
-        PostEffect::Bloom { threshold, intensity, radius } => neighbourhood(Neighbourhood::Bloom(Bloom {
-            threshold: factor(*threshold),
-            intensity: factor(*intensity),
-            gaussian: Gaussian::new(radius * scale),
-        })),
+        PostEffect::Blur { radius } => Step::Neighbourhood(Neighbourhood::Blur(
+            Gaussian::new(radius * scale).unwrap_or_else(Gaussian::of_one_pixel),
+        )),
+        PostEffect::Bloom { threshold, intensity, radius } => {
+            Step::Neighbourhood(Neighbourhood::Bloom(Bloom {
+                threshold: factor(*threshold),
+                intensity: factor(*intensity),
+                gaussian: Gaussian::new(radius * scale),
+            }))
+        }
         PostEffect::Sharpen { amount } => {
-            neighbourhood(Neighbourhood::Sharpen(Sharpen { amount: factor(*amount) }))
+            Step::Neighbourhood(Neighbourhood::Sharpen(Sharpen { amount: factor(*amount) }))
         }
-        PostEffect::Fxaa => neighbourhood(Neighbourhood::Fxaa(Fxaa)),
-        PostEffect::Kernel { kernel } => {
-            Kernel::new(kernel).ok_or(Reason::Identity).map(Neighbourhood::Kernel).and_then(neighbourhood)
-        }
+        PostEffect::Fxaa => Step::Neighbourhood(Neighbourhood::Fxaa(Fxaa)),
+        PostEffect::Kernel { kernel } => Step::Neighbourhood(Neighbourhood::Kernel(Kernel::new(kernel))),
     }
 }
 

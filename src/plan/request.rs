@@ -7,8 +7,10 @@ mod query;
 
 pub use budget::{Budget, Preset};
 pub use knobs::Knobs;
+pub(super) use query::quoted;
 pub use query::{Query, QueryFault};
 
+use super::Elisions;
 use crate::model::Shading;
 use glam::{DVec3, Vec3};
 
@@ -57,7 +59,7 @@ pub struct FrameRequest {
     pub background: Option<BackgroundRequest>,
     /// What may be left out; the picture is the same whatever it says. `None`: as the program was
     /// started.
-    pub elide: Option<Elide>,
+    pub elide: Option<Elisions>,
 }
 
 impl FrameRequest {
@@ -72,23 +74,6 @@ impl FrameRequest {
             None => Self { turn_deg: self.turn_deg + deg, ..self.clone() },
         }
     }
-}
-
-impl Elide {
-    /// What [`Elide::Only`] may name: the steps that a frame can do without. This version has none.
-    pub const NAMES: [&str; 0] = [];
-}
-
-/// Which passes and steps may be left out where they would not change the picture.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Elide {
-    /// Everything that can be.
-    #[default]
-    All,
-    /// Nothing: every step runs.
-    None,
-    /// The ones of these [`Elide::NAMES`] alone.
-    Only(Vec<String>),
 }
 
 /// A place about the target: yaw 0 looks from +z, 90 from +x; pitch 90 from above.
@@ -170,6 +155,12 @@ impl Output {
             Self::Radiance | Self::Wireframe => 16,
             _ => 4,
         }
+    }
+
+    /// Whether it shows work that elisions spare: what it shows is then what is left of that.
+    #[must_use]
+    pub fn shows_work(self) -> bool {
+        matches!(self, Self::ShadowMap | Self::Tiles | Self::Shaded)
     }
 
     /// Whether it is a picture of 16-bit values, not of colours.

@@ -2,14 +2,25 @@
 
 use super::opacity::{Alpha, Transparency};
 use super::request::Output;
-use super::{Heights, Relief, Specular, Surface};
+use super::{Elision, Elisions, Heights, Relief, Spared, Specular, Surface};
 use crate::model::{Material, Mesh, Shading, Tangents, Texture, Wrap};
 use glam::Vec3;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
+
+/// The largest reflectance: beyond, the sum of two could be infinite, and nothing times 0 is then 0.
+const LARGEST: f32 = 1e18;
+
+/// What a colour map that is not there reads as.
+static WHITE: LazyLock<Arc<Texture>> = LazyLock::new(|| Arc::new(Texture::of_one_texel([255; 4])));
+
+/// What a normal map that is not there reads as.
+static UPRIGHT: LazyLock<Arc<Texture>> =
+    LazyLock::new(|| Arc::new(Texture::of_one_texel([128, 128, 255, 255])));
 
 /// The surface that `material` makes of `mesh`, which shows through as `transparency` says and whose
 /// `tangents` are there if any of its materials has a relief and it has texture coordinates. `shading`
-/// overrides the material's; data outputs override both.
+/// overrides the material's; data outputs override both. What `elide` leaves out, the surface goes without.
+#[expect(clippy::too_many_arguments, reason = "what a surface follows from")]
 #[must_use]
 pub fn settle(
     material: &Material,
@@ -18,6 +29,7 @@ pub fn settle(
     receives_shadow: bool,
     shading: Option<Shading>,
     output: Output,
+    elide: Elisions,
     transparency: &Transparency,
 ) -> Surface {
     let shading = match output {
@@ -31,20 +43,19 @@ pub fn settle(
     let lit = matches!(shading, Shading::BlinnPhong | Shading::Lambert);
     let colored = lit || shading == Shading::Unlit;
     let emissive = if colored && output.is_shaded() { material.emissive } else { Vec3::ZERO };
-    let map = |map: &Option<Arc<Texture>>, needed: bool| map.clone().filter(|_| needed);
-    let specular = (shading == Shading::BlinnPhong && material.specular != Vec3::ZERO).then(|| Specular {
-        color: material.specular,
-        shininess: material.shininess,
-        map: material.specular_map.clone(),
-    });
+    let mut factors = Factors { elide, spared: Spared::default() };
+    let (diffuse, diffuse_map) = factors.settle(material.diffuse, &material.diffuse_map, colored);
+    let glows = emissive != Vec3::ZERO;
+    let (emissive, emissive_map) = factors.settle(emissive, &material.emissive_map, glows);
+    let specular = factors.specular(material, shading);
     let mut surface = Surface {
         shading,
-        diffuse: material.diffuse,
-        ambient: material.ambient,
+        diffuse,
+        ambient: material.ambient.map(|ambient| ambient.min(Vec3::splat(LARGEST))),
         emissive,
         specular,
-        diffuse_map: map(&material.diffuse_map, colored),
-        emissive_map: map(&material.emissive_map, emissive != Vec3::ZERO),
+        diffuse_map,
+        emissive_map,
         relief: None,
         alpha: match transparency {
             Transparency::Blended(alpha) => Some(alpha.clone()),
@@ -54,22 +65,84 @@ pub fn settle(
         lit,
         receives_shadow,
         periodic_uv: false,
+        spared: factors.spared,
     };
     if surface.needs_normal() {
-        surface.relief = relief(material, tangents);
+        surface.relief = relief(material, tangents, elide);
+        surface.spared.flat_relief = whole_relief(material, tangents).maps() - surface.relief_maps();
     }
-    surface.settle_periods();
+    surface.settle_periods(material);
     surface
 }
 
+/// Settles colours and the maps that multiply them.
+struct Factors {
+    elide: Elisions,
+    spared: Spared,
+}
+
+impl Factors {
+    /// A colour and its map, as far as they are read at all.
+    fn settle(
+        &mut self,
+        color: Vec3,
+        map: &Option<Arc<Texture>>,
+        is_read: bool,
+    ) -> (Vec3, Option<Arc<Texture>>) {
+        let color = color.min(Vec3::splat(LARGEST));
+        match map {
+            _ if !is_read => (color, None),
+            None if self.elide.contains(Elision::AbsentMaps) => {
+                self.spared.absent_maps += 1;
+                (color, None)
+            }
+            None => (color, Some(WHITE.clone())),
+            Some(map) => match map.factor().filter(|_| self.elide.contains(Elision::ConstantMaps)) {
+                Some([r, g, b, _]) => {
+                    self.spared.constant_maps += 1;
+                    (color * Vec3::new(r, g, b), None)
+                }
+                None => (color, Some(map.clone())),
+            },
+        }
+    }
+
+    /// The highlight of a material that is shaded as `shading` says.
+    fn specular(&mut self, material: &Material, shading: Shading) -> Option<Specular> {
+        if shading != Shading::BlinnPhong {
+            return None;
+        }
+        if material.specular == Vec3::ZERO && self.elide.contains(Elision::BlackSpecular) {
+            self.spared.highlights = 1;
+            return None;
+        }
+        let (color, map) = self.settle(material.specular, &material.specular_map, true);
+        Some(Specular { color, shininess: material.shininess, map })
+    }
+}
+
 /// What tilts the normals of `material`; `None` where its maps change none.
-fn relief(material: &Material, tangents: Option<&Arc<Tangents>>) -> Option<Relief> {
+fn relief(material: &Material, tangents: Option<&Arc<Tangents>>, elide: Elisions) -> Option<Relief> {
+    if !elide.contains(Elision::FlatRelief) {
+        return Some(whole_relief(material, tangents));
+    }
     let normal_map = material.normals().cloned();
     // Without texture coordinates all of the surface has one height.
     let map = material.heights().filter(|_| tangents.is_some());
     let heights = map.map(|map| Heights { map: map.clone(), scale: material.bump_scale });
     let tilts = normal_map.is_some() || heights.is_some();
     tilts.then(|| Relief { tangents: tangents.cloned(), normal_map, heights })
+}
+
+/// The same with maps that tilt nothing: at least a flat one.
+fn whole_relief(material: &Material, tangents: Option<&Arc<Tangents>>) -> Relief {
+    // A slope times a scale of 0 is no number where it is infinite.
+    let map = material.bump_map.as_ref().filter(|_| tangents.is_some() && material.bump_scale != 0.0);
+    Relief {
+        tangents: tangents.cloned(),
+        normal_map: Some(material.normal_map.as_ref().unwrap_or(&UPRIGHT).clone()),
+        heights: map.map(|map| Heights { map: map.clone(), scale: material.bump_scale }),
+    }
 }
 
 impl Surface {
@@ -90,13 +163,22 @@ impl Surface {
             lit: false,
             receives_shadow: false,
             periodic_uv: false,
+            spared: Spared::default(),
         };
-        surface.settle_periods();
+        let periodic = surface.maps().all(|map| is_periodic(map));
+        surface.periodic_uv = periodic;
         surface
     }
 
-    fn settle_periods(&mut self) {
-        let periodic = self.maps().all(|map| is_periodic(map));
+    /// Every map of the material that could be read has its say, also where it is left out: what is left out
+    /// must not change how the others are rounded.
+    fn settle_periods(&mut self, material: &Material) {
+        let colors = [&material.diffuse_map, &material.emissive_map, &material.specular_map];
+        let relief = [&material.normal_map, &material.bump_map];
+        let of_color = colors.into_iter().filter(|_| self.lit || self.shading == Shading::Unlit);
+        let maps = of_color.chain(relief.into_iter().filter(|_| self.needs_normal()));
+        let of_alpha = self.alpha.iter().flat_map(Alpha::maps);
+        let periodic = maps.flatten().chain(of_alpha).all(|map| is_periodic(map));
         self.periodic_uv = periodic;
     }
 }

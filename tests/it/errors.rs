@@ -164,7 +164,7 @@ async fn status_422_lists_all_faults_of_a_query() {
     assert_eq!(named, ["fov", "height", "samples", "t", "widht", "width"]);
     client.get("/scenes/t/frame.png?background=nowhere").await.problem(422);
     let problem = client.get("/scenes/t/frame.png?elide=shadow").await.problem(422);
-    assert!(problem["detail"].as_str().is_some_and(|detail| detail.contains("none yet")), "{problem}");
+    assert!(problem["detail"].as_str().is_some_and(|detail| detail.contains("decided_taps")), "{problem}");
 }
 
 #[tokio::test]

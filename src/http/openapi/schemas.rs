@@ -1,6 +1,6 @@
 //! Schemas that the annotations can't say: words, tuples in text, bodies by media type.
 
-use crate::plan::{FrameRequest, Output};
+use crate::plan::{Elision, FrameRequest, Output};
 use crate::scene::gallery;
 use serde_json::{Value, json};
 
@@ -47,9 +47,15 @@ fn of_parameter(name: &str) -> Option<Value> {
         "orbit" => Some(numbers("{1,2}")),
         "background" => Some(json!({ "type": "string", "minLength": 1 })),
         "framing" => Some(words(&["advance", "length"])),
-        "elide" => Some(words(&["all", "none"])),
+        "elide" => Some(elisions()),
         _ => None,
     }
+}
+
+/// `all`, `none`, or some of the names with commas between.
+fn elisions() -> Value {
+    let name = format!("({})", Elision::ALL.map(Elision::name).join("|"));
+    json!({ "type": "string", "pattern": format!("^(all|none|{name}(,{name})*)$") })
 }
 
 fn words(words: &[&str]) -> Value {

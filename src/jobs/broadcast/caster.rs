@@ -131,8 +131,8 @@ impl Caster {
             number += 1;
             let comment = format!("rasterd frame={number} revision={revision} t={t}");
             match self.renderer.encode_live(drawn, self.broadcast.request.quality(), comment).await {
-                Ok(Encoded { jpeg, size, timings, stats }) => {
-                    let picture = Picture { number, revision, t, jpeg, size, timings, stats };
+                Ok(Encoded { jpeg, size, timings, stats, tally }) => {
+                    let picture = Picture { number, revision, t, jpeg, size, timings, stats, tally };
                     self.broadcast.pace().push_back(Instant::now());
                     self.news.send_replace(News { picture: Some(Arc::new(picture)), failure: None });
                 }

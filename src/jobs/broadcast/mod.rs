@@ -14,6 +14,7 @@ mod request;
 pub use request::StreamRequest;
 
 use super::{JobError, Renderer};
+use crate::plan::Tally;
 use crate::scene::Entry;
 use bytes::Bytes;
 use caster::Caster;
@@ -94,6 +95,8 @@ pub struct Picture {
     pub timings: Vec<(&'static str, f64)>,
     /// Counts, by the names of `Render-Stats`.
     pub stats: Vec<(&'static str, u64)>,
+    /// What was done, and what elisions spared.
+    pub tally: Tally,
 }
 
 impl Streams {

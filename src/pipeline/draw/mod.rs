@@ -18,7 +18,7 @@ use super::work::{Cancelled, Work};
 use super::{samples, tiles};
 use crate::math::Viewport;
 use crate::model::Part;
-use crate::plan::{Opacity, Slot};
+use crate::plan::{Elisions, Opacity, Slot};
 
 /// Instances of indexed triangles.
 pub struct DrawCall<'a> {
@@ -64,7 +64,7 @@ impl DrawCall<'_> {
             slots: std::slice::from_ref(slot),
             mirrored: false,
         });
-        let bins = geometry::draw(&primitives.collect::<Vec<_>>(), &viewport, grid, work)?;
+        let bins = geometry::draw(&primitives.collect::<Vec<_>>(), &viewport, grid, Elisions::ALL, work)?;
         let pass = tile::Pass { bins: &bins, state, instances: &instances, call: self };
         work.map(targets.split(&state.viewport, &grid), tile::Scratch::default, |scratch, tile| {
             pass.draw_tile(work.level, tile, scratch);

@@ -3,6 +3,7 @@
 use super::Counts;
 use super::setup::Triangle;
 use crate::math::Viewport;
+use crate::plan::{Elision, Elisions, Tally, Unit};
 
 /// How a picture is cut into square tiles. All coordinates in sub-pixels are relative to the
 /// viewport centre.
@@ -107,9 +108,32 @@ pub struct Chunk {
     entries: Vec<u32>,
     /// Whether there are too many entries to sort.
     crowded: bool,
+    /// What its triangles cost, and what they were spared.
+    pub tally: Tally,
+    elide: Elisions,
 }
 
 impl Chunk {
+    /// Without triangles yet; of what `elide` names they are spared.
+    #[must_use]
+    pub fn new(elide: Elisions) -> Self {
+        Self { elide, ..Self::default() }
+    }
+
+    /// Notes how many of its triangles were set up, and how many went through the clipper.
+    pub(super) fn tally_triangles(&mut self) {
+        let Counts { triangles, outside, clipped, .. } = self.counts;
+        let inside = triangles - outside;
+        self.tally.count(Unit::Triangles, inside);
+        self.tally.spare(Elision::OutsideTriangles, outside);
+        if self.elide.contains(Elision::Clipping) {
+            self.tally.count(Unit::Clipped, clipped);
+            self.tally.spare(Elision::Clipping, inside - clipped);
+        } else {
+            self.tally.count(Unit::Clipped, inside);
+        }
+    }
+
     /// Triangles that touch the tile at (column, row), and perhaps some that don't, in submission order.
     #[must_use]
     pub fn tile(&self, column: u32, row: u32) -> &[u32] {
@@ -137,14 +161,18 @@ impl Chunk {
         let ([x0, x1], [y0, y1]) = (tiles(x), tiles(y));
         if !self.crowded {
             let before = pairs.len();
+            // A triangle's box says all there is to say while it is thin.
+            let lists_box = x0 == x1 || y0 == y1 || !self.elide.contains(Elision::TilesPassedBy);
             for row in y0..=y1 {
                 for column in x0..=x1 {
-                    // A triangle's box says all there is to say while it is thin.
-                    if x0 == x1 || y0 == y1 || touches(&t, column, row, grid) {
+                    if lists_box || touches(&t, column, row, grid) {
                         pairs.push((row * grid.columns + column, index));
                     }
                 }
             }
+            let (listed, tiles) = (pairs.len() - before, (x1 - x0 + 1) * (y1 - y0 + 1));
+            self.tally.count(Unit::TileEntries, listed as u64);
+            self.tally.spare(Elision::TilesPassedBy, u64::from(tiles) - listed as u64);
             if pairs.len() == before {
                 return false;
             }

@@ -14,7 +14,7 @@ use super::shader::VertexShader;
 use super::work::{Cancelled, Work};
 use crate::math::{View, Viewport};
 use crate::model::Part;
-use crate::plan::{Item, Slot};
+use crate::plan::{Elisions, Item, Slot, Tally};
 use bin::{Chunk, TileGrid};
 use mesh::MeshVertices;
 
@@ -39,6 +39,8 @@ pub struct Counts {
     pub clipped: u64,
     /// Binned: what the tiles draw.
     pub drawn: u64,
+    /// Those of them that are pieces of clipped ones.
+    pub pieces: u64,
 }
 
 impl Counts {
@@ -51,6 +53,14 @@ impl Counts {
         self.no_sample += o.no_sample;
         self.clipped += o.clipped;
         self.drawn += o.drawn;
+        self.pieces += o.pieces;
+    }
+
+    /// The sum of all fates: as many as went in.
+    #[must_use]
+    pub fn fates(&self) -> u64 {
+        let whole = self.drawn - self.pieces;
+        self.outside + self.culled + self.degenerate + self.no_sample + self.clipped + whole
     }
 }
 
@@ -63,9 +73,24 @@ pub struct Bins {
     pub chunks: Vec<Chunk>,
     /// Sums over the chunks.
     pub counts: Counts,
+    /// What it cost, and what it was spared.
+    pub tally: Tally,
+    /// What may be left out where they are drawn.
+    pub elide: Elisions,
 }
 
 impl Bins {
+    /// The triangles of `chunks`, and the sums of what they tell.
+    #[must_use]
+    pub fn new(grid: TileGrid, chunks: Vec<Chunk>, elide: Elisions) -> Self {
+        let (mut counts, mut tally) = (Counts::default(), Tally::default());
+        for chunk in &chunks {
+            counts.add(&chunk.counts);
+            tally.add(&chunk.tally);
+        }
+        Self { grid, chunks, counts, tally, elide }
+    }
+
     /// Lists the triangles that may touch the tile at (column, row), in submission order.
     pub fn list(&self, place: [u32; 2], list: &mut Vec<(u32, u32)>) {
         list.clear();
@@ -79,7 +104,13 @@ impl Bins {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn run(items: &[Item], view: &View, grid: TileGrid, work: &Work) -> Result<Bins, Cancelled> {
+pub fn run(
+    items: &[Item],
+    view: &View,
+    grid: TileGrid,
+    elide: Elisions,
+    work: &Work,
+) -> Result<Bins, Cancelled> {
     let vertices: Vec<MeshVertices> = items.iter().map(|item| MeshVertices::new(item, view)).collect();
     let primitives = items.iter().zip(&vertices).map(|(item, vertices)| Primitives {
         vertices,
@@ -89,7 +120,7 @@ pub fn run(items: &[Item], view: &View, grid: TileGrid, work: &Work) -> Result<B
         slots: &item.slots,
         mirrored: item.mirrored,
     });
-    draw(&primitives.collect::<Vec<_>>(), &view.viewport(), grid, work)
+    draw(&primitives.collect::<Vec<_>>(), &view.viewport(), grid, elide, work)
 }
 
 /// Indexed triangles, and the vertex shader that places them.
@@ -112,16 +143,20 @@ pub struct Primitives<'a> {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn draw(all: &[Primitives], viewport: &Viewport, grid: TileGrid, work: &Work) -> Result<Bins, Cancelled> {
+pub fn draw(
+    all: &[Primitives],
+    viewport: &Viewport,
+    grid: TileGrid,
+    elide: Elisions,
+    work: &Work,
+) -> Result<Bins, Cancelled> {
     let vertices = vertex::transform(all, viewport, work)?;
     let tasks = all.iter().enumerate().flat_map(|(i, primitives)| {
         let count = primitives.triangles.len();
         (0..count).step_by(CHUNK_TRIANGLES).map(move |from| (i, from..count.min(from + CHUNK_TRIANGLES)))
     });
     let chunks = work.map(tasks.collect(), Vec::new, |pairs, (i, range)| {
-        setup::process(&all[i], range, &vertices[i], viewport, &grid, work.level, pairs)
+        setup::process(&all[i], range, &vertices[i], viewport, &grid, elide, work.level, pairs)
     })?;
-    let mut counts = Counts::default();
-    chunks.iter().for_each(|chunk| counts.add(&chunk.counts));
-    Ok(Bins { grid, chunks, counts })
+    Ok(Bins::new(grid, chunks, elide))
 }

@@ -7,7 +7,7 @@ use super::vertex::{GUARD, ScreenVertices, outcode};
 use crate::math::Viewport;
 use crate::math::simd::Level;
 use crate::pipeline::shader::ClipBlock;
-use crate::plan::{Opacity, Slot};
+use crate::plan::{Elision, Elisions, Opacity, Slot};
 use crate::scene::Cull;
 use std::ops::Range;
 
@@ -154,16 +154,20 @@ enum Fate {
 }
 
 /// Sets up the triangles `range` of `primitives` and bins them.
+#[expect(clippy::too_many_arguments, reason = "a part of a mesh, where it goes, and how")]
 pub fn process(
     primitives: &Primitives,
     range: Range<usize>,
     vertices: &ScreenVertices,
     viewport: &Viewport,
     grid: &TileGrid,
+    elide: Elisions,
     level: Level,
     pairs: &mut Vec<(u32, u32)>,
 ) -> Chunk {
-    let mut chunk = Chunk::default();
+    let mut chunk = Chunk::new(elide);
+    let drops_outside = elide.contains(Elision::OutsideTriangles);
+    let spares_clipper = elide.contains(Elision::Clipping);
     let parts = primitives.parts;
     let mut part = parts.partition_point(|p| p.first_triangle as usize <= range.start) - 1;
     for source in range {
@@ -174,13 +178,14 @@ pub fn process(
         let corners = primitives.triangles[source];
         let codes = corners.map(|v| vertices.outcode[v as usize]);
         chunk.counts.triangles += 1;
-        if codes[0] & codes[1] & codes[2] & outcode::OUTSIDE != 0 {
+        if drops_outside && codes[0] & codes[1] & codes[2] & outcode::OUTSIDE != 0 {
             chunk.counts.outside += 1;
             continue;
         }
         // Mesh triangles number below 2³².
         let source = u32::try_from(source).expect("a mesh has fewer than 2³² triangles");
-        if (codes[0] | codes[1] | codes[2]) & outcode::CLIP == 0 {
+        let is_inside = (codes[0] | codes[1] | codes[2]) & outcode::CLIP == 0;
+        if is_inside && (spares_clipper || leaves_clipper_whole(primitives, corners, viewport, level)) {
             let snapped = corners.map(|v| {
                 let v = v as usize;
                 Snapped { x: vertices.x[v], y: vertices.y[v], depth: vertices.depth[v] }
@@ -206,7 +211,19 @@ pub fn process(
         }
     }
     chunk.sort_into_tiles(grid, pairs);
+    chunk.tally_triangles();
     chunk
+}
+
+/// Whether nothing is cut off a triangle.
+fn leaves_clipper_whole(
+    primitives: &Primitives,
+    corners: [u32; 3],
+    viewport: &Viewport,
+    level: Level,
+) -> bool {
+    let polygon = Polygon::triangle(clip_positions(primitives, corners, level), viewport);
+    polygon.is_some_and(|polygon| polygon.clipped(viewport).corners() == polygon.corners())
 }
 
 /// Where the corners of one triangle are, asked again: few are clipped, and keeping the positions of all
@@ -247,6 +264,7 @@ fn process_clipped(
         }
         record(fate, chunk, grid, pairs);
         // The triangle's fate is "clipped"; that of its pieces shows only in what is drawn.
+        counts.pieces += chunk.counts.drawn - counts.drawn;
         counts.drawn = chunk.counts.drawn;
         chunk.counts = counts;
     }

@@ -66,7 +66,8 @@ impl<'a> Chain<'a> {
     pub fn new(plan: &'a PostChain, own: &[&'a dyn Effect]) -> Self {
         let mut effects: Vec<&dyn Effect> = Vec::new();
         for pass in &plan.passes {
-            effects.extend([pass.effect.as_effect(), &pass.then]);
+            effects.extend(pass.effect.as_ref().map(Neighbourhood::as_effect));
+            effects.push(&pass.then);
         }
         if own.is_empty() {
             // What ends the chain is left to whoever encodes the picture.

@@ -4,7 +4,7 @@ use super::varyings::Varyings;
 use super::{BLOCK, Lighting};
 use crate::math::simd::*;
 use crate::math::{Projection, View, approx, round_to_f32};
-use crate::plan::PlannedLight;
+use crate::plan::{Elision, PlannedLight};
 use crate::scene::LightKind;
 use glam::{DVec3, Vec3};
 
@@ -84,7 +84,8 @@ pub fn facing(level: Level, light: &LightSource, varyings: &Varyings, count: usi
     })
 }
 
-/// Adds what a light contributes to a block; `visibility` is 1 where it is seen and 0 in its shadow.
+/// Adds what a light contributes to a block; `visibility` is 1 where it is seen and 0 in its shadow. Returns
+/// how many fragments were looked at.
 #[expect(clippy::too_many_arguments, reason = "one term of the lighting sum, with all it depends on")]
 pub fn add_light(
     level: Level,
@@ -95,15 +96,20 @@ pub fn add_light(
     reflectance: &Reflectance,
     count: usize,
     out: &mut [[f32; BLOCK]; 3],
-) {
+) -> usize {
     dispatch!(level, simd => {
+        let mut lit = 0;
         for at in (0..count).step_by(LANES) {
             let seen = f32x8::from_slice(simd, &visibility[at..at + LANES]);
-            add_to_eight(simd, light, seen, varyings, lighting, reflectance, at, out);
+            if add_to_eight(simd, light, seen, varyings, lighting, reflectance, at, out) {
+                lit += LANES.min(count - at);
+            }
         }
-    });
+        lit
+    })
 }
 
+/// Adds to eight fragments of a block; false if they are left out because none faces the light.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "eight fragments of `add_light`")]
 fn add_to_eight<S: Simd>(
@@ -115,15 +121,15 @@ fn add_to_eight<S: Simd>(
     reflectance: &Reflectance,
     at: usize,
     out: &mut [[f32; BLOCK]; 3],
-) {
+) -> bool {
     let normal = Vec3x8::load(simd, &varyings.normal, at);
     let position = Vec3x8::load(simd, &varyings.position, at);
     let (towards, attenuation) = incoming(simd, light, position);
     let zero = f32x8::splat(simd, 0.0);
     let cosine = normal.dot(towards);
     let lit = cosine.simd_gt(zero);
-    if lit.all_false() {
-        return;
+    if lit.all_false() && lighting.elide.contains(Elision::TurnedAway) {
+        return false;
     }
     let mut reflected = Vec3x8::load(simd, reflectance.diffuse, at).scale(cosine);
     if let Some((color, shininess)) = reflectance.specular {
@@ -135,6 +141,7 @@ fn add_to_eight<S: Simd>(
     let dark = Vec3x8 { x: zero, y: zero, z: zero };
     let sum = Vec3x8::load(simd, out, at) + (reflected * gain).select(lit, dark);
     sum.store(out, at);
+    true
 }
 
 /// Unit vectors towards the viewer.

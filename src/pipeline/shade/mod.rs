@@ -15,6 +15,7 @@ pub use surface::{HoleShader, SurfaceShader};
 
 use super::shadow::ShadowMap;
 use crate::math::{Bounds, View};
+use crate::plan::{Elisions, Tally};
 use glam::{DVec3, Vec3};
 use light::LightSource;
 use varyings::Varyings;
@@ -47,6 +48,8 @@ pub struct Lighting<'a> {
     pub view: &'a View,
     /// What positions are relative to: an offset from the eye, see [`anchor`].
     pub anchor: DVec3,
+    /// What may be left out.
+    pub elide: Elisions,
 }
 
 /// What positions are shaded relative to, as an offset from the eye: the point of the viewing axis that
@@ -66,10 +69,18 @@ pub fn anchor(bounds: Option<Bounds>, view: &View) -> DVec3 {
 pub struct Scratch {
     varyings: Varyings,
     visibility: [f32; BLOCK],
+    tally: Tally,
+}
+
+impl Scratch {
+    /// What shading cost and was spared since it was last asked.
+    pub fn take_tally(&mut self) -> Tally {
+        std::mem::take(&mut self.tally)
+    }
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        Self { varyings: Varyings::default(), visibility: [1.0; BLOCK] }
+        Self { varyings: Varyings::default(), visibility: [1.0; BLOCK], tally: Tally::default() }
     }
 }

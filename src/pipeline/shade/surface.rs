@@ -1,13 +1,13 @@
 //! The pixel shaders of a scene's surfaces.
 
-use super::light::{self, Reflectance};
+use super::light::{self, LightSource, Reflectance};
 use super::varyings::{self, Records, Source, Varyings};
 use super::{BLOCK, Fragment, Lighting, Scratch, alpha, relief, texture};
 use crate::math::colour::{BRIGHTEST, SRGB_DECODE};
 use crate::math::simd::*;
 use crate::model::{self, Texture};
 use crate::pipeline::shader::{Outputs, PixelShader, Shading, Visible};
-use crate::plan::Surface;
+use crate::plan::{Elision, Surface, Tally, Unit};
 use glam::Vec3;
 
 /// A surface under the lights of its scene: writes its radiance and its alpha to target 0.
@@ -90,7 +90,8 @@ fn shade_block(
 ) {
     let (count, surface) = (fragments.len(), source.surface());
     varyings::interpolate(level, records, source, fragments, &mut scratch.varyings);
-    let Scratch { varyings, visibility } = scratch;
+    let Scratch { varyings, visibility, tally } = scratch;
+    count_samples(surface, count as u64, tally);
     if let Some(relief) = &surface.relief {
         relief::tilt(level, relief, varyings, count);
     }
@@ -107,7 +108,7 @@ fn shade_block(
                 multiply(level, map, varyings, count, out);
             }
             if surface.lit {
-                add_lights(level, surface, varyings, &diffuse, lighting, count, visibility, out);
+                add_lights(level, surface, varyings, &diffuse, lighting, count, (visibility, tally), out);
             } else {
                 for (sum, term) in out.iter_mut().flatten().zip(diffuse.iter().flatten()) {
                     *sum += term;
@@ -180,7 +181,7 @@ fn add_lights(
     diffuse: &[[f32; BLOCK]; 3],
     lighting: &Lighting,
     count: usize,
-    visibility: &mut [f32; BLOCK],
+    (visibility, tally): (&mut [f32; BLOCK], &mut Tally),
     out: &mut [[f32; BLOCK]; 3],
 ) {
     let mut specular = [[0.0; BLOCK]; 3];
@@ -196,16 +197,48 @@ fn add_lights(
     for source in &lighting.lights {
         match source.shadow {
             Some(map) if surface.receives_shadow => {
-                let facing = light::facing(level, source, varyings, count);
-                if facing == 0 {
+                let asked = asking(level, source, varyings, lighting, count);
+                if asked == 0 {
+                    tally.spare(Elision::TurnedAway, count as u64);
                     continue;
                 }
-                lighting.maps[map].visibility(level, &varyings.shadow[map], facing, visibility);
+                let taps = lighting.maps[map].visibility(level, &varyings.shadow[map], asked, visibility);
+                tally.count(Unit::Lookups, u64::from(asked.count_ones()));
+                tally.count(Unit::Taps, taps.done);
+                tally.spare(Elision::DecidedTaps, taps.spared);
             }
             _ => *visibility = [1.0; BLOCK],
         }
-        light::add_light(level, source, visibility, varyings, lighting, &reflectance, count, out);
+        let lit = light::add_light(level, source, visibility, varyings, lighting, &reflectance, count, out);
+        count_light(surface, lit as u64, count as u64, tally);
     }
+}
+
+/// One bit for each fragment of a block that asks whether it is in a light's shadow.
+fn asking(level: Level, source: &LightSource, varyings: &Varyings, lighting: &Lighting, count: usize) -> u64 {
+    if lighting.elide.contains(Elision::TurnedAway) {
+        light::facing(level, source, varyings, count)
+    } else {
+        u64::MAX >> (BLOCK - count)
+    }
+}
+
+/// Counts a block's texture samples, and those it is spared.
+fn count_samples(surface: &Surface, count: u64, tally: &mut Tally) {
+    let spared = &surface.spared;
+    tally.count(Unit::ColorSamples, surface.color_maps() * count);
+    tally.spare(Elision::AbsentMaps, spared.absent_maps * count);
+    tally.spare(Elision::ConstantMaps, spared.constant_maps * count);
+    tally.count(Unit::ReliefSamples, surface.relief_maps() * count);
+    tally.spare(Elision::FlatRelief, spared.flat_relief * count);
+}
+
+/// Counts the light on a block of which `lit` fragments were looked at.
+fn count_light(surface: &Surface, lit: u64, count: u64, tally: &mut Tally) {
+    tally.count(Unit::LitFragments, lit);
+    tally.spare(Elision::TurnedAway, count - lit);
+    tally.count(Unit::Highlights, u64::from(surface.specular.is_some()) * lit);
+    tally.spare(Elision::BlackSpecular, surface.spared.highlights * lit);
 }
 
 /// A normal's component as a colour: the linear value of the code that `output=normal` shows.

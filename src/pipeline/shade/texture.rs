@@ -6,7 +6,7 @@ mod heights;
 pub use heights::sample_slopes;
 
 use super::BLOCK;
-use crate::math::colour::{self, SRGB_DECODE};
+use crate::math::colour::{self, UNORM_DECODE};
 use crate::math::simd::*;
 use crate::math::{approx, round_to_f32};
 use crate::model::texture::{ColorSpace, Filter, Texture, Wrap};
@@ -26,11 +26,6 @@ impl Default for Coordinates {
         Self { uv: [[0.0; BLOCK]; 2], per_pixel: [[0.0; BLOCK]; 4] }
     }
 }
-
-/// `code / 255`.
-static UNORM_DECODE: LazyLock<[f32; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|c| round_to_f32(f64::from(u8::try_from(c).unwrap_or(255)) / 255.0))
-});
 
 /// The component of a normal that a code in 0–255 stands for, exactly 0 at 128 and 1 at 255. Source:
 /// Direct3D 11.3 functional specification, 3.2.3.3, moved by 128.
@@ -184,10 +179,7 @@ type Texel = [f32; 4];
 
 impl<'a> Sampler<'a> {
     fn of_colors(texture: &'a Texture) -> Self {
-        let decode = match texture.color_space {
-            ColorSpace::Srgb => &*SRGB_DECODE,
-            ColorSpace::Linear => &*UNORM_DECODE,
-        };
+        let decode = texture.decode();
         Self { texture, decode, alpha: &UNORM_DECODE, zero: 0.0, step: 1.0 / 65535.0 }
     }
 

@@ -10,13 +10,13 @@ mod receiver;
 use super::HALF_TEXEL;
 use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
-use super::penumbra::{Light, MapFilter, Taps, Verdict, filtered, soft};
+use super::penumbra::{Light, MapFilter, TapCounter, TapCounts, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
 use crate::math::round_to_f32;
 use crate::math::simd::*;
 use crate::pipeline::shade::{BLOCK, varyings::Receivers};
 use crate::pipeline::work::{Cancelled, Work};
-use crate::plan::{Face, Filter, Pcss, ShadowPass};
+use crate::plan::{Elisions, Face, Filter, Pcss, ShadowPass};
 use kernel::{Kernel, Spot};
 use receiver::{Lifted, Receiver};
 
@@ -28,6 +28,7 @@ pub struct CubeMap {
     resolution: u32,
     lens: Lens,
     filter: CubeFilter,
+    elide: Elisions,
 }
 
 /// What all sides have in common.
@@ -71,6 +72,7 @@ const LARGEST_OFFSET: f64 = 0.25;
 struct Maps<'a> {
     cube: &'a CubeMap,
     pyramids: &'a Pyramids,
+    counter: TapCounter,
 }
 
 /// A light that is no point. Heights are ratios: how many times as far from the light the receiver is as
@@ -82,10 +84,15 @@ struct Soft<'a> {
 
 impl CubeMap {
     /// Draws the faces of `pass`.
-    pub(super) fn draw(pass: &ShadowPass, faces: &[Face], work: &Work) -> Result<Self, Cancelled> {
+    pub(super) fn draw(
+        pass: &ShadowPass,
+        faces: &[Face],
+        elide: Elisions,
+        work: &Work,
+    ) -> Result<Self, Cancelled> {
         let mut sides = [const { None }; 6];
         for face in faces {
-            sides[face.side] = Some(DepthMap::draw(face, work)?);
+            sides[face.side] = Some(DepthMap::draw(face, elide, work)?);
         }
         let view = &faces.first().expect("a cube without faces is not planned").view;
         let focal_length = view.scale[0] / 256.0;
@@ -100,7 +107,7 @@ impl CubeMap {
             clearance: round_to_f32(0.5 * pass.bias / focal_length),
         };
         let filter = filter(pass, &sides, focal_length, work)?;
-        Ok(Self { sides, resolution: view.width, lens, filter })
+        Ok(Self { sides, resolution: view.width, lens, filter, elide })
     }
 
     /// The maps of its sides.
@@ -115,7 +122,8 @@ impl CubeMap {
         receivers: &Receivers,
         asked: u64,
         out: &mut [f32; BLOCK],
-    ) {
+    ) -> TapCounts {
+        let mut counts = TapCounts::default();
         for at in (0..BLOCK).step_by(LANES) {
             let asked = asked >> at & 0xff;
             if asked == 0 {
@@ -123,23 +131,34 @@ impl CubeMap {
             }
             let lifted = Lifted::load(simd, receivers, at, &self.lens);
             let out = &mut out[at..at + LANES];
-            match &self.filter {
-                CubeFilter::Hard => self.hard(simd, &lifted).store_slice(out),
+            let eight = match &self.filter {
+                CubeFilter::Hard => {
+                    self.hard(simd, &lifted).store_slice(out);
+                    TapCounts { done: u64::from(asked.count_ones()), spared: 0 }
+                }
                 CubeFilter::Pcf { pyramid: pyramids, disc, kernel } => {
-                    let maps = Maps { cube: self, pyramids };
+                    let maps = self.maps(pyramids);
                     for lane in set_bits(asked) {
                         let receiver = lifted.lane(lane);
                         out[lane] = filtered(simd, &maps, disc, &receiver, &kernel.around(&receiver));
                     }
+                    maps.counter.counts()
                 }
                 CubeFilter::Pcss { pyramid: pyramids, search, filter, size } => {
-                    let light = Soft { maps: Maps { cube: self, pyramids }, size };
+                    let light = Soft { maps: self.maps(pyramids), size };
                     for lane in set_bits(asked) {
                         out[lane] = soft(simd, &light, search, filter, &lifted.lane(lane));
                     }
+                    light.maps.counter.counts()
                 }
-            }
+            };
+            counts.add(eight);
         }
+        counts
+    }
+
+    fn maps<'a>(&'a self, pyramids: &'a Pyramids) -> Maps<'a> {
+        Maps { cube: self, pyramids, counter: TapCounter::default() }
     }
 
     /// One tap for each of eight receivers.
@@ -211,7 +230,12 @@ impl Taps for Maps<'_> {
 
     #[inline(always)]
     fn verdict(&self, receiver: &Receiver, kernel: &Kernel, range: DepthRange) -> Verdict {
-        kernel.verdict(receiver, &self.cube.lens, range)
+        kernel.verdict(receiver, &self.cube.lens, range).within(self.cube.elide)
+    }
+
+    #[inline(always)]
+    fn counter(&self) -> &TapCounter {
+        &self.counter
     }
 
     /// A tap asks about the point of the receiver's plane in its direction; where that lies farther from

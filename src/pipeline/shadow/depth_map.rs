@@ -9,7 +9,7 @@ use crate::pipeline::tiles::fragments::{Entry, SampleOrder};
 use crate::pipeline::tiles::layers::{Layers, TileList};
 use crate::pipeline::work::{Cancelled, Work};
 use crate::pipeline::{samples, shade};
-use crate::plan::{Face, Opacity};
+use crate::plan::{Elisions, Face, Opacity, Tally};
 
 pub(super) const TILE_SHIFT: u32 = 6;
 pub(super) const TILE_SIDE: usize = 1 << TILE_SHIFT;
@@ -27,6 +27,8 @@ pub struct DepthMap {
     /// Tiles in a row.
     columns: usize,
     tiles: Vec<Option<Box<Tile>>>,
+    /// What drawing it cost, and what it was spared.
+    tally: Box<Tally>,
 }
 
 /// The texels of a kernel: first and last x, first and last y; −1 and the resolution stand for all that
@@ -48,10 +50,10 @@ pub(super) enum Window<'a> {
 impl DepthMap {
     /// Draws the casters of `face`: the same geometry and coverage code as the picture, with depth alone
     /// as its target.
-    pub(super) fn draw(face: &Face, work: &Work) -> Result<Self, Cancelled> {
+    pub(super) fn draw(face: &Face, elide: Elisions, work: &Work) -> Result<Self, Cancelled> {
         let view: &View = &face.view;
         let grid = TileGrid::new(view, TILE_SHIFT, samples::pattern(1));
-        let bins = geometry::run(&face.items, view, grid, work)?;
+        let bins = geometry::run(&face.items, view, grid, elide, work)?;
         let touched: Vec<(u32, u32)> = (0..grid.rows)
             .flat_map(|row| (0..grid.columns).map(move |column| (column, row)))
             .filter(|&(column, row)| bins.chunks.iter().any(|chunk| !chunk.tile(column, row).is_empty()))
@@ -60,10 +62,17 @@ impl DepthMap {
             draw_tile(work, face, &bins, place, scratch)
         })?;
         let mut tiles: Vec<Option<Box<Tile>>> = (0..grid.tiles()).map(|_| None).collect();
-        for (&(column, row), tile) in touched.iter().zip(drawn) {
+        let mut tally = bins.tally;
+        for (&(column, row), (tile, cost)) in touched.iter().zip(drawn) {
             tiles[(row * grid.columns + column) as usize] = Some(tile);
+            tally.add(&cost);
         }
-        Ok(Self { resolution: view.width, columns: grid.columns as usize, tiles })
+        Ok(Self { resolution: view.width, columns: grid.columns as usize, tiles, tally: Box::new(tally) })
+    }
+
+    /// What drawing it cost, and what it was spared.
+    pub(super) fn tally(&self) -> &Tally {
+        &self.tally
     }
 
     /// Texels along a side.
@@ -145,11 +154,11 @@ fn draw_tile(
     bins: &Bins,
     (column, row): (u32, u32),
     scratch: &mut Scratch,
-) -> Box<Tile> {
+) -> (Box<Tile>, Tally) {
     let pattern = samples::pattern(1);
     let mut samples = Visibility { depth: vec![0.0; TILE_TEXELS], id: Vec::new() };
     let Scratch { blocks, cut_outs: (list, ids), layers, shade } = scratch;
-    blocks.clear(TILE_SIDE);
+    blocks.begin(TILE_SIDE, bins.elide);
     list.clear();
     let region = Region::of_tile(&bins.grid, column, row);
     dispatch!(work.level, simd => {
@@ -175,7 +184,9 @@ fn draw_tile(
         let test = |draw| face.test(draw);
         cut_out::draw(work, &tile, ids, test, &face.view, &mut samples, blocks, layers, shade);
     }
-    samples.depth.into_boxed_slice().try_into().expect("a tile of texels")
+    let mut tally = blocks.take_tally();
+    tally.add(&layers.take_tally());
+    (samples.depth.into_boxed_slice().try_into().expect("a tile of texels"), tally)
 }
 
 impl TexelBox {
@@ -245,7 +256,7 @@ pub(super) mod tests {
             tile.iter().any(|&depth| depth > 0.0).then_some(tile)
         };
         let tiles = (0..columns * columns).map(|i| tile(i % columns, i / columns)).collect();
-        DepthMap { resolution, columns: columns as usize, tiles }
+        DepthMap { resolution, columns: columns as usize, tiles, tally: Box::default() }
     }
 
     #[test]

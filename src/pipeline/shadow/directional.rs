@@ -2,20 +2,21 @@
 
 use super::depth_map::{DepthMap, TexelBox, float};
 use super::disc::{Disc, EightPoints};
-use super::penumbra::{Light, MapFilter, Taps, Verdict, filtered, soft};
+use super::penumbra::{Light, MapFilter, TapCounter, TapCounts, Taps, Verdict, filtered, soft};
 use super::pyramid::{DepthRange, Pyramid};
 use super::{DEPTH_TOLERANCE, WIDEST_CONE};
 use crate::math::round_to_f32;
 use crate::math::simd::*;
 use crate::pipeline::shade::{BLOCK, varyings::Receivers};
 use crate::pipeline::work::{Cancelled, Work};
-use crate::plan::{Face, Filter, Pcss, ShadowPass};
+use crate::plan::{Elisions, Face, Filter, Pcss, ShadowPass};
 
 /// The map of a light along whose rays all texels have one size.
 #[derive(Debug, PartialEq)]
 pub struct DirectionalMap {
     depth: DepthMap,
     filter: MapFilter<Pyramid, Kernel, SoftKernel>,
+    elide: Elisions,
 }
 
 /// A kernel around a receiver.
@@ -59,6 +60,8 @@ const WIDEST_TEXELS: f32 = 1024.0;
 struct Maps<'a> {
     depth: &'a DepthMap,
     pyramid: &'a Pyramid,
+    elide: Elisions,
+    counter: TapCounter,
 }
 
 /// A kernel and the texels that its taps can meet.
@@ -76,8 +79,13 @@ struct Soft<'a> {
 
 impl DirectionalMap {
     /// Draws the one map of `pass`.
-    pub(super) fn draw(pass: &ShadowPass, face: &Face, work: &Work) -> Result<Self, Cancelled> {
-        let depth = DepthMap::draw(face, work)?;
+    pub(super) fn draw(
+        pass: &ShadowPass,
+        face: &Face,
+        elide: Elisions,
+        work: &Work,
+    ) -> Result<Self, Cancelled> {
+        let depth = DepthMap::draw(face, elide, work)?;
         let texels = face.view.scale.map(|scale| scale / 256.0);
         let filter = match &pass.filter {
             Filter::Hard => MapFilter::Hard,
@@ -93,7 +101,7 @@ impl DirectionalMap {
                 size: SoftKernel::new(pcss, texels, face.view.depth_slope(), pass.bias),
             },
         };
-        Ok(Self { depth, filter })
+        Ok(Self { depth, filter, elide })
     }
 
     /// Its one map.
@@ -108,7 +116,7 @@ impl DirectionalMap {
         receivers: &Receivers,
         asked: u64,
         out: &mut [f32; BLOCK],
-    ) {
+    ) -> TapCounts {
         match &self.filter {
             MapFilter::Hard => {
                 for at in (0..BLOCK).step_by(LANES) {
@@ -116,21 +124,28 @@ impl DirectionalMap {
                         self.hard(simd, receivers, at).store_slice(&mut out[at..at + LANES]);
                     }
                 }
+                TapCounts { done: u64::from(asked.count_ones()), spared: 0 }
             }
             MapFilter::Pcf { pyramid, disc, kernel } => {
-                let maps = Maps { depth: &self.depth, pyramid };
+                let maps = self.maps(pyramid);
                 for at in set_bits(asked) {
                     let receiver = self.receiver(receivers, at);
                     out[at] = filtered(simd, &maps, disc, &receiver, &maps.place(&receiver, *kernel));
                 }
+                maps.counter.counts()
             }
             MapFilter::Pcss { pyramid, search, filter, size } => {
-                let light = Soft { maps: Maps { depth: &self.depth, pyramid }, size };
+                let light = Soft { maps: self.maps(pyramid), size };
                 for at in set_bits(asked) {
                     out[at] = soft(simd, &light, search, filter, &self.receiver(receivers, at));
                 }
+                light.maps.counter.counts()
             }
         }
+    }
+
+    fn maps<'a>(&'a self, pyramid: &'a Pyramid) -> Maps<'a> {
+        Maps { depth: &self.depth, pyramid, elide: self.elide, counter: TapCounter::default() }
     }
 
     /// One tap for each of eight receivers.
@@ -187,7 +202,12 @@ impl Taps for Maps<'_> {
 
     #[inline(always)]
     fn verdict(&self, receiver: &Receiver, placed: &Placed, range: DepthRange) -> Verdict {
-        placed.kernel.verdict(receiver, range)
+        placed.kernel.verdict(receiver, range).within(self.elide)
+    }
+
+    #[inline(always)]
+    fn counter(&self) -> &TapCounter {
+        &self.counter
     }
 
     /// A tap asks about the point of the receiver's plane above or below it; where that lies deeper than

@@ -42,6 +42,12 @@ impl Disc {
 
     /// How many points there are.
     #[inline(always)]
+    pub(super) fn taps(&self) -> u64 {
+        u64::from(self.count)
+    }
+
+    /// The same as a divisor.
+    #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "at most a thousand taps")]
     pub(super) fn count(&self) -> f32 {
         self.count as f32

@@ -33,12 +33,13 @@ mod pyramid;
 pub use cube::CubeMap;
 pub use depth_map::DepthMap;
 pub use directional::DirectionalMap;
+pub use penumbra::TapCounts;
 
 use super::shade::BLOCK;
 use super::shade::varyings::{RayFrame, Receivers, ShadowFrame};
 use super::work::{Cancelled, Work};
 use crate::math::simd::*;
-use crate::plan::{Maps, ShadowPass};
+use crate::plan::{Elisions, Maps, ShadowPass, Tally};
 use glam::DMat3;
 
 /// The shadow of one light.
@@ -62,15 +63,15 @@ const HALF_TEXEL: f64 = 0.5 + 1.0 / 128.0;
 /// cone's own height.
 const WIDEST_CONE: f64 = 0.25;
 
-/// Draws the maps of each pass.
+/// Draws the maps of each pass, without what `elide` leaves out of that and of reading them.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn render_maps(passes: &[ShadowPass], work: &Work) -> Result<Vec<ShadowMap>, Cancelled> {
+pub fn render_maps(passes: &[ShadowPass], elide: Elisions, work: &Work) -> Result<Vec<ShadowMap>, Cancelled> {
     let draw = |pass: &ShadowPass| match &pass.maps {
-        Maps::Directional(face) => DirectionalMap::draw(pass, face, work).map(ShadowMap::Directional),
+        Maps::Directional(face) => DirectionalMap::draw(pass, face, elide, work).map(ShadowMap::Directional),
         Maps::Cube { faces, .. } => {
-            CubeMap::draw(pass, faces, work).map(|map| ShadowMap::Cube(Box::new(map)))
+            CubeMap::draw(pass, faces, elide, work).map(|map| ShadowMap::Cube(Box::new(map)))
         }
     };
     passes.iter().map(draw).collect()
@@ -87,16 +88,30 @@ impl ShadowMap {
         }
     }
 
+    /// What drawing them cost, and what it was spared.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        let mut tally = Tally::default();
+        self.depths().into_iter().flatten().for_each(|map| tally.add(map.tally()));
+        tally
+    }
+
     /// The part of the light that reaches the receivers of a block: 1 where all of it does, 0 where
     /// casters hide the whole light; only those whose bit is set in `asked` need an answer.
     ///
     /// Receivers are as [`frame`] makes them. Outside the maps no caster is, and what lies nearer to the
-    /// light than all of them is lit as well.
-    pub fn visibility(&self, level: Level, receivers: &Receivers, asked: u64, out: &mut [f32; BLOCK]) {
+    /// light than all of them is lit as well. Returns how many taps that took.
+    pub fn visibility(
+        &self,
+        level: Level,
+        receivers: &Receivers,
+        asked: u64,
+        out: &mut [f32; BLOCK],
+    ) -> TapCounts {
         dispatch!(level, simd => match self {
             Self::Directional(map) => map.visibility(simd, receivers, asked, out),
             Self::Cube(map) => map.visibility(simd, receivers, asked, out),
-        });
+        })
     }
 }
 

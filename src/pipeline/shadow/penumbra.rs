@@ -7,6 +7,8 @@ use super::depth_map::float;
 use super::disc::Disc;
 use super::pyramid::DepthRange;
 use crate::math::simd::*;
+use crate::plan::{Elision, Elisions};
+use std::cell::Cell;
 
 /// How maps are read: with pyramids `P`, by kernels `K` of one size or of sizes `S` that follow what
 /// blocks the light.
@@ -27,6 +29,56 @@ pub(super) enum Verdict {
     Mixed,
 }
 
+impl Verdict {
+    /// What it says where taps may be left out: where not, they must tell.
+    #[inline(always)]
+    pub(super) fn within(self, elide: Elisions) -> Self {
+        if elide.contains(Elision::DecidedTaps) { self } else { Self::Mixed }
+    }
+}
+
+/// How many taps were made, and how many a pyramid spared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TapCounts {
+    /// Made.
+    pub done: u64,
+    /// Known without being made.
+    pub spared: u64,
+}
+
+impl TapCounts {
+    /// Adds another's.
+    #[inline(always)]
+    pub(super) fn add(&mut self, o: Self) {
+        self.done += o.done;
+        self.spared += o.spared;
+    }
+}
+
+/// Counts taps on the way through kernels.
+#[derive(Debug, Default)]
+pub(super) struct TapCounter {
+    done: Cell<u64>,
+    spared: Cell<u64>,
+}
+
+impl TapCounter {
+    #[inline(always)]
+    fn make(&self, disc: &Disc) {
+        self.done.set(self.done.get() + disc.taps());
+    }
+
+    #[inline(always)]
+    fn spare(&self, disc: &Disc) {
+        self.spared.set(self.spared.get() + disc.taps());
+    }
+
+    #[inline(always)]
+    pub(super) fn counts(&self) -> TapCounts {
+        TapCounts { done: self.done.get(), spared: self.spared.get() }
+    }
+}
+
 /// The maps of one light, as kernels of taps ask them.
 pub(super) trait Taps {
     /// Who asks.
@@ -37,8 +89,11 @@ pub(super) trait Taps {
     /// A range that holds every depth that taps of the kernel can meet.
     fn range(&self, receiver: &Self::Receiver, kernel: &Self::Kernel) -> DepthRange;
 
-    /// What every tap of the kernel over texels of such depths must say.
+    /// What every tap of the kernel over texels of such depths must say, if that may be told.
     fn verdict(&self, receiver: &Self::Receiver, kernel: &Self::Kernel, range: DepthRange) -> Verdict;
+
+    /// Where taps are counted.
+    fn counter(&self) -> &TapCounter;
 
     /// Calls `f` with which of eight taps are blocked, and by what: the larger, the nearer to the light.
     fn for_each_tap<S: Simd>(
@@ -91,11 +146,13 @@ pub(super) fn filtered<S: Simd, M: Taps>(
     receiver: &M::Receiver,
     kernel: &M::Kernel,
 ) -> f32 {
-    match maps.verdict(receiver, kernel, maps.range(receiver, kernel)) {
+    let decided = match maps.verdict(receiver, kernel, maps.range(receiver, kernel)) {
         Verdict::Lit => 1.0,
         Verdict::Dark => 0.0,
-        Verdict::Mixed => lit_part(simd, maps, disc, receiver, kernel),
-    }
+        Verdict::Mixed => return lit_part(simd, maps, disc, receiver, kernel),
+    };
+    maps.counter().spare(disc);
+    decided
 }
 
 /// The same from the taps alone.
@@ -112,6 +169,7 @@ pub(super) fn lit_part<S: Simd, M: Taps>(
         #[inline(always)]
         |blocked: mask32x8<S>, _| count += blocked.to_bitmask().count_ones(),
     );
+    maps.counter().make(disc);
     maps.for_each_tap(simd, disc, receiver, kernel, tap);
     (disc.count() - float(count)) / disc.count()
 }
@@ -131,7 +189,10 @@ pub(super) fn soft<S: Simd, L: Light>(
     let maps = light.maps();
     let (kernel, highest) = match light.fixed_search(receiver) {
         Some(kernel) => match maps.verdict(receiver, &kernel, maps.range(receiver, &kernel)) {
-            Verdict::Lit => return 1.0,
+            Verdict::Lit => {
+                maps.counter().spare(search);
+                return 1.0;
+            }
             Verdict::Dark | Verdict::Mixed => (kernel, f32::INFINITY),
         },
         None => {
@@ -140,9 +201,16 @@ pub(super) fn soft<S: Simd, L: Light>(
             for _ in 0..NARROWINGS {
                 let range = maps.range(receiver, &kernel);
                 match maps.verdict(receiver, &kernel, range) {
-                    Verdict::Lit => return 1.0,
+                    Verdict::Lit => {
+                        maps.counter().spare(search);
+                        return 1.0;
+                    }
                     // The filter would lie within the search.
-                    Verdict::Dark => return 0.0,
+                    Verdict::Dark => {
+                        maps.counter().spare(search);
+                        maps.counter().spare(filter);
+                        return 0.0;
+                    }
                     Verdict::Mixed => {}
                 }
                 let height = light.height_within(receiver, &kernel, range);
@@ -180,6 +248,7 @@ pub(super) fn mean_blocker<S: Simd, M: Taps>(
             count += blocked.to_bitmask().count_ones();
         },
     );
+    maps.counter().make(disc);
     maps.for_each_tap(simd, disc, receiver, kernel, tap);
     (count > 0).then(|| sum_of_lanes(sum) / float(count))
 }

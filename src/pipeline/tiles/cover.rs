@@ -7,6 +7,7 @@
 use super::depth::{DepthFunction, Plane, PositiveSum, small};
 use crate::math::simd::*;
 use crate::pipeline::geometry::setup::Triangle;
+use crate::plan::{Elision, Elisions, Tally, Unit};
 
 /// A block's side in pixels; the hierarchy keeps one depth a block.
 const BLOCK_SHIFT: usize = 3;
@@ -114,14 +115,57 @@ impl<S: Simd> Target<S> for DepthTarget<'_> {
 /// For each 8×8 block, a depth that every one of its samples has reached: what lies wholly behind it
 /// is hidden.
 #[derive(Clone, Debug, Default)]
-pub struct BlockDepths(Vec<f32>);
+pub struct BlockDepths {
+    depths: Vec<f32>,
+    /// By how much an edge may miss a block and still count as crossing it.
+    slack: i64,
+    counts: BlockCounts,
+}
+
+/// What became of the blocks that triangles touch.
+#[derive(Clone, Copy, Debug, Default)]
+struct BlockCounts {
+    /// Crossed by an edge, so that it was tested sample by sample.
+    crossed: u64,
+    /// Wholly inside or outside of every edge.
+    uniform: u64,
+    /// Behind what is drawn.
+    hidden: u64,
+    /// Whose depths were computed.
+    drawn: u64,
+}
 
 impl BlockDepths {
     /// Forgets everything and takes a tile of `side × side` pixels.
     pub fn clear(&mut self, side: usize) {
+        self.begin(side, Elisions::ALL);
+    }
+
+    /// The same without what `elide` does not name. A depth that is no number compares with none, so
+    /// nothing is hidden; and with enough slack every edge crosses every block.
+    pub fn begin(&mut self, side: usize, elide: Elisions) {
         let blocks = side >> BLOCK_SHIFT;
-        self.0.clear();
-        self.0.resize(blocks * blocks, 0.0);
+        let farthest = if elide.contains(Elision::HiddenBlocks) { 0.0 } else { f32::NAN };
+        self.depths.clear();
+        self.depths.resize(blocks * blocks, farthest);
+        self.slack = if elide.contains(Elision::UniformBlocks) { 0 } else { i64::MAX / 4 };
+    }
+
+    /// Takes over the depths of another, and keeps its own counts.
+    pub fn copy_depths(&mut self, other: &Self) {
+        self.depths.clone_from(&other.depths);
+        self.slack = other.slack;
+    }
+
+    /// What its blocks cost and were spared since it was last asked.
+    pub fn take_tally(&mut self) -> Tally {
+        let BlockCounts { crossed, uniform, hidden, drawn } = std::mem::take(&mut self.counts);
+        let mut tally = Tally::default();
+        tally.count(Unit::EdgeBlocks, crossed);
+        tally.count(Unit::DepthBlocks, drawn);
+        tally.spare(Elision::UniformBlocks, uniform);
+        tally.spare(Elision::HiddenBlocks, hidden);
+        tally
     }
 }
 
@@ -232,17 +276,25 @@ fn cover_blocks<S: Simd, D: DepthFunction, T: Target<S>>(
         *ramp = ramp_i32(simd) * edge.step[0];
     }
     let blocks_a_row = side >> BLOCK_SHIFT;
+    let mut counts = BlockCounts::default();
     for block_y in span.y[0] >> BLOCK_SHIFT..=span.y[1] >> BLOCK_SHIFT {
         let top = block_y << BLOCK_SHIFT;
         let rows = top.max(span.y[0])..(top + LANES).min(span.y[1] + 1);
         for block_x in span.x[0] >> BLOCK_SHIFT..=span.x[1] >> BLOCK_SHIFT {
             let left = block_x << BLOCK_SHIFT;
-            let Some((crossing, inner)) = classify(edges, left, top) else { continue };
-            let behind = &mut blocks.0[block_y * blocks_a_row + block_x];
+            let Some((crossing, inner)) = classify(edges, left, top, blocks.slack) else {
+                counts.uniform += 1;
+                continue;
+            };
+            counts.crossed += u64::from(!inner);
+            counts.uniform += u64::from(inner && !edges.is_empty());
+            let behind = &mut blocks.depths[block_y * blocks_a_row + block_x];
             let (nearest, farthest) = depth.range(left, top);
             if nearest < *behind {
+                counts.hidden += 1;
                 continue;
             }
+            counts.drawn += 1;
             if T::OCCLUDES && inner && farthest > *behind {
                 *behind = farthest;
             }
@@ -267,21 +319,31 @@ fn cover_blocks<S: Simd, D: DepthFunction, T: Target<S>>(
             }
         }
     }
+    blocks.counts.add(&counts);
+}
+
+impl BlockCounts {
+    fn add(&mut self, o: &Self) {
+        self.crossed += o.crossed;
+        self.uniform += o.uniform;
+        self.hidden += o.hidden;
+        self.drawn += o.drawn;
+    }
 }
 
 /// Which edges cross the 8×8 block at (left, top), and whether none does; `None` if the block is
-/// outside one.
+/// outside one. Edges that miss the block by `slack` or less cross it.
 #[inline(always)]
-fn classify(edges: &[Edge], left: usize, top: usize) -> Option<([bool; 3], bool)> {
+fn classify(edges: &[Edge], left: usize, top: usize, slack: i64) -> Option<([bool; 3], bool)> {
     let mut crossing = [false; 3];
     for (i, e) in edges.iter().enumerate() {
         let [dx, dy] = e.step.map(i64::from);
         // Eight pixels on, the edge function differs by a multiple of 256: rounding loses no sign.
         let corner = i64::from(e.at_corner) + dx * i64::from(small(left)) + dy * i64::from(small(top));
-        if corner + 8 * (dx.max(0) + dy.max(0)) < 0 {
+        if corner + 8 * (dx.max(0) + dy.max(0)) + slack < 0 {
             return None;
         }
-        crossing[i] = corner + 8 * (dx.min(0) + dy.min(0)) < 0;
+        crossing[i] = corner + 8 * (dx.min(0) + dy.min(0)) < slack;
     }
     Some((crossing, crossing == [false; 3]))
 }

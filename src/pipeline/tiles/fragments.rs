@@ -6,6 +6,7 @@ use crate::pipeline::geometry::Bins;
 use crate::pipeline::geometry::bin::Chunk;
 use crate::pipeline::geometry::setup::Triangle;
 use crate::pipeline::shade::Fragment;
+use crate::plan::{Elision, Tally, Unit};
 
 /// A triangle of the tile's list: its chunk and its place there.
 pub type Entry = (u32, u32);
@@ -85,8 +86,9 @@ impl Fragments {
     ) {
         self.clear();
         self.targets = side * side;
+        let spares_means = bins.elide.contains(Elision::UniformPixels);
         for y in 0..region.size[1] {
-            let alone = samples.alone(level, y, side, order.pattern.len());
+            let alone = if spares_means { samples.alone(level, y, side, order.pattern.len()) } else { 0 };
             for x in 0..region.size[0] {
                 let pixel = y * side + x;
                 let [number, right, down] =
@@ -120,6 +122,20 @@ impl Fragments {
             counts[shared.pixel as usize] += shared.count;
         }
         counts
+    }
+
+    /// What they are to be, and what the pixels that are alone are spared.
+    #[must_use]
+    pub fn tally(&self, region: &Region) -> Tally {
+        let mut tally = Tally::default();
+        let is_covered = |shared: &&SharedPixel| shared.count > 0;
+        let covered = self.shared.iter().filter(is_covered).count();
+        let alone = self.sorted.len() - self.masks.len();
+        tally.count(Unit::Fragments, self.sorted.len() as u64);
+        tally.count(Unit::CoveredPixels, (alone + covered) as u64);
+        tally.count(Unit::Means, self.shared.len() as u64);
+        tally.spare(Elision::UniformPixels, (region.area() - self.shared.len()) as u64);
+        tally
     }
 
     fn clear(&mut self) {

@@ -11,6 +11,7 @@ use crate::pipeline::geometry::Bins;
 use crate::pipeline::geometry::setup::Triangle;
 use crate::pipeline::shade::{BLOCK, Fragment, Scratch};
 use crate::pipeline::shader::{Outputs, PixelShader, Visible};
+use crate::plan::Tally;
 
 /// Samples that may be listed at once: half a megabyte of depths, eight layers of a whole tile at 4
 /// samples a pixel. A document can ask for millions of layers.
@@ -177,10 +178,10 @@ impl Layers {
         self.depths.clear();
         let mut blocks = std::mem::take(&mut self.blocks);
         if window == Window::whole(tile.region) {
-            blocks.clone_from(opaque.blocks);
+            blocks.copy_depths(opaque.blocks);
         } else {
             // The hierarchy's blocks are not the window's.
-            blocks.clear(tile.side);
+            blocks.begin(tile.side, tile.bins.elide);
         }
         let (region, corner) = window.region(tile.region, tile.side);
         let mut taken = 0;
@@ -196,6 +197,11 @@ impl Layers {
         });
         self.blocks = blocks;
         taken
+    }
+
+    /// What its blocks cost and were spared since it was last asked.
+    pub fn take_tally(&mut self) -> Tally {
+        self.blocks.take_tally()
     }
 
     /// Shades every layer with what `shader` says of its draw. Calls `each` with blocks of fragments, whose

@@ -23,7 +23,7 @@ use super::work::{Cancelled, Work};
 use super::{resolve, sky};
 use crate::math::View;
 use crate::math::simd::*;
-use crate::plan::{Draw, Item, ItemTest, Opacity, Plan};
+use crate::plan::{Draw, Elision, Item, ItemTest, Opacity, Plan, Tally, Unit};
 use blend::{Behind, Canvas};
 use cover::{BlockDepths, IdTarget, Region, Visibility};
 use fragments::{Entry, Fragments, SampleOrder, triangle};
@@ -44,6 +44,20 @@ impl Region {
         let size = [grid.width - first[0], grid.height - first[1]].map(|n| n.min(side) as usize);
         let origin = [0, 1].map(|axis| grid.origin[axis] + first[axis].cast_signed() * 256);
         Self { origin, size }
+    }
+
+    /// How many pixels of it lie in the picture.
+    #[must_use]
+    pub fn area(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
+    /// Places of all of them in a tile of `side` pixels a row.
+    #[must_use]
+    pub fn pixels(&self, side: usize) -> Vec<u32> {
+        let row = |y: usize| y * side..y * side + self.size[0];
+        let pixels = (0..self.size[1]).flat_map(row);
+        pixels.map(|pixel| u32::try_from(pixel).expect("a tile is small")).collect()
     }
 
     /// Screen position of the upper left corner of a pixel of this tile, in sub-pixels.
@@ -170,7 +184,7 @@ impl Scratch {
         let side = 1 << grid.tile_shift;
         let pattern = samples::pattern(samples);
         self.samples.clear(side, pattern.len());
-        self.blocks.clear(side);
+        self.blocks.begin(side, bins.elide);
         let region = Region::of_tile(grid, place[0], place[1]);
         self.cut_outs.clear();
         self.blended.clear();
@@ -235,6 +249,24 @@ impl Scratch {
         let mut canvas = Canvas { colors: &mut self.colors, coverage, counts };
         let scratch = (&mut self.blend, &mut self.shade);
         blend::draw(work, shared, &tile, &self.blended, &behind, &mut canvas, scratch)
+    }
+
+    /// What looking at the tile cost, and what it was spared.
+    fn take_look_tally(&mut self) -> Tally {
+        let mut tally = self.blocks.take_tally();
+        tally.add(&self.layers.take_tally());
+        tally.add(&self.shade.take_tally());
+        tally.count(Unit::Tiles, 1);
+        tally.count(Unit::EmptyTiles, u64::from(self.list.is_empty()));
+        tally
+    }
+
+    /// What shading the tile cost, and what it was spared.
+    fn take_shade_tally(&mut self, region: &Region) -> Tally {
+        let mut tally = self.shade.take_tally();
+        tally.add(&self.fragments.tally(region));
+        tally.add(&self.blend.take_tally());
+        tally
     }
 
     /// What each sample of the tile sees, as [`Scratch::find_visible`] and
@@ -309,7 +341,8 @@ pub fn draw(look: &Look, outputs: Vec<Vec<TileTask>>, work: &Work) -> Result<Vec
         let mut clock = Clock::start();
         scratch.find_visible(work.level, look.bins, place, look.samples);
         scratch.find_cut_outs(work, look.bins, place, &order, &look.tests);
-        let look = TileTimes { raster: clock.lap(), ..TileTimes::default() };
+        let look =
+            TileTimes { raster: clock.lap(), tally: scratch.take_look_tally(), ..TileTimes::default() };
         let times: Vec<TileTimes> = tasks.into_iter().map(|task| task(scratch, work)).collect();
         (look, times)
     })?;
@@ -346,15 +379,18 @@ pub fn shade<P>(
     });
     if !scratch.fragments.sorted.is_empty() {
         shade_fragments(level, shared, scratch);
-        times.shaded = scratch.fragments.sorted.len() as u64;
         times.shade = clock.lap();
     }
 
     scratch.sky.iter_mut().for_each(|channel| channel.resize(side * side, 0.0));
-    if !scratch.fragments.sky.is_empty() {
-        shared.background.draw(level, &scratch.fragments.sky, &region, side, &mut scratch.sky);
+    let everywhere = (!shared.lighting.elide.contains(Elision::CoveredSky)).then(|| region.pixels(side));
+    let pixels = everywhere.as_ref().unwrap_or(&scratch.fragments.sky);
+    if !pixels.is_empty() {
+        shared.background.draw(level, pixels, &region, side, &mut scratch.sky);
+        times.tally.count(Unit::SkyPixels, pixels.len() as u64);
         times.sky = clock.lap();
     }
+    times.tally.spare(Elision::CoveredSky, (region.area() - pixels.len()) as u64);
 
     resolve::resolve(&scratch.fragments, &scratch.sky, shared.samples, side, &mut scratch.colors);
     let transparent = shared.background.is_transparent();
@@ -369,6 +405,7 @@ pub fn shade<P>(
     }
     let (alpha, counts) = (alpha.as_deref(), counts.as_deref());
     write(&Resolved { colors: &scratch.colors, alpha, counts, side }, tile);
+    times.tally.add(&scratch.take_shade_tally(&region));
     times.resolve += clock.lap();
     times
 }

@@ -6,7 +6,7 @@ use crate::math::round_to_f32;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaussian {
     /// `weights[k]` is that of each of the two pixels at distance k + 1. The pixel itself has what is
-    /// missing to 1. Never empty; the last is not 0.
+    /// missing to 1. Never empty; the last is not 0, but for that of a single pixel.
     pub weights: Vec<f32>,
 }
 
@@ -24,6 +24,14 @@ impl Gaussian {
             weights.pop();
         }
         (!weights.is_empty()).then_some(Self { weights })
+    }
+}
+
+impl Gaussian {
+    /// That of a radius so small that every pixel keeps its colour.
+    #[must_use]
+    pub fn of_one_pixel() -> Self {
+        Self { weights: vec![0.0] }
     }
 }
 
@@ -46,9 +54,9 @@ pub struct KernelRow {
 }
 
 impl Kernel {
-    /// Settles an odd square of rows; `None` if every pixel keeps its colour.
+    /// Settles an odd square of rows.
     #[must_use]
-    pub fn new(kernel: &[Vec<f64>]) -> Option<Self> {
+    pub fn new(kernel: &[Vec<f64>]) -> Self {
         let reach = kernel.len() / 2;
         let weights_of = |row: &Vec<f64>| -> Vec<(usize, f32)> {
             let weights = row.iter().map(|weight| round_to_f32(*weight)).enumerate();
@@ -59,7 +67,13 @@ impl Kernel {
             .filter(|(_, weights)| !weights.is_empty())
             .map(|(row, weights)| KernelRow { row, weights })
             .collect();
-        let keeps = matches!(rows.as_slice(), [only] if only.row == reach && only.weights == [(reach, 1.0)]);
-        (!keeps).then_some(Self { reach, rows })
+        Self { reach, rows }
+    }
+
+    /// Whether every pixel keeps its colour.
+    #[must_use]
+    pub fn keeps_every_color(&self) -> bool {
+        let reach = self.reach;
+        matches!(self.rows.as_slice(), [only] if only.row == reach && only.weights == [(reach, 1.0)])
     }
 }

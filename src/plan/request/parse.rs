@@ -1,16 +1,13 @@
 //! The frame query: text in, [`FrameRequest`] out, or every fault at once.
 
-use super::query::{in_range, integer, not_one_of, numbers, positive, quoted};
-use super::{
-    BackgroundRequest, Budget, Elide, FrameRequest, Knobs, Orbit, Output, Preset, Query, QueryFault,
-};
+use super::query::{in_range, integer, not_one_of, numbers, positive};
+use super::{BackgroundRequest, Budget, FrameRequest, Knobs, Orbit, Output, Preset, Query, QueryFault};
 use crate::limits::Limits;
 use crate::math::colour::linear_from_srgb8;
 use crate::model::{Filter, Shading};
 use crate::scene::document::words::Word;
 use crate::scene::document::{MAX_FOV_Y_DEG, MIN_FOV_Y_DEG};
 use glam::Vec3;
-use std::str::FromStr;
 
 /// Words of `shading`: those of a document.
 const SHADINGS: &[(&str, Shading)] = <Shading as Word>::WORDS;
@@ -209,31 +206,10 @@ fn colour(text: &str) -> Option<Vec3> {
     Some(Vec3::new(linear(r), linear(g), linear(b)))
 }
 
-/// `all`, `none`, or a list of names.
-impl FromStr for Elide {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "all" => Ok(Self::All),
-            "none" => Ok(Self::None),
-            _ => text.split(',').map(elidable).collect::<Result<_, _>>().map(Self::Only),
-        }
-    }
-}
-
-fn elidable(name: &str) -> Result<String, String> {
-    if Elide::NAMES.contains(&name) {
-        return Ok(name.to_owned());
-    }
-    let names =
-        if Elide::NAMES.is_empty() { "there are none yet".to_owned() } else { Elide::NAMES.join(", ") };
-    Err(format!("must be all, none, or names with commas between ({names}), is {}", quoted(name)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Elisions;
     use glam::DVec3;
     use proptest::prelude::*;
 
@@ -298,7 +274,7 @@ mod tests {
             orbit: Some(Orbit { yaw_deg: 30.0, pitch_deg: 20.0, distance: Some(5.0) }),
             turn_deg: 0.0,
             background: Some(BackgroundRequest::Color(Vec3::X)),
-            elide: Some(Elide::None),
+            elide: Some(Elisions::NONE),
         };
         assert_eq!(request, Ok(expected));
     }
@@ -323,15 +299,6 @@ mod tests {
         assert_eq!(faults, ["max_error: cannot be given together with preset: both choose the settings"]);
         let request = FrameRequest::parse([("preset", "high"), ("samples", "2")]).expect("a good query");
         assert_eq!(request.budget, Some(Budget::Preset(Preset::High)));
-    }
-
-    #[test]
-    fn what_cannot_be_left_out_is_no_name() {
-        assert_eq!("all".parse(), Ok(Elide::All));
-        for text in ["shadow", "all,none", "", "All"] {
-            let fault = text.parse::<Elide>().expect_err("a fault");
-            assert!(fault.contains("(there are none yet)"), "{fault}");
-        }
     }
 
     #[test]

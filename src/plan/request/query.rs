@@ -194,7 +194,7 @@ pub(super) fn in_range<T: PartialOrd + Display + Copy>(
 }
 
 /// `text` in quotes and short enough to be repeated to its author.
-pub(super) fn quoted(text: &str) -> String {
+pub(in crate::plan) fn quoted(text: &str) -> String {
     format!("{:?}", shortened(text))
 }
 

@@ -49,10 +49,8 @@ pub(super) fn faces(
             } else {
                 (!asked).then_some(Reason::NoReceiverThere)
             };
-            if let Some(reason) = without {
-                notes.leave_out_side(side, reason);
-            }
-            without.is_none().then_some(face)
+            let leaves_out = without.is_some_and(|reason| notes.leaves_out_side(side, reason));
+            (!leaves_out).then_some(face)
         })
         .collect()
 }

@@ -7,7 +7,7 @@ mod directional;
 pub(super) use casters::Participants;
 pub use cube::WIDEST_TANGENT;
 
-use super::{AlphaTest, Item, ItemTest, LeftOut, Part, Reason, Slot, number};
+use super::{AlphaTest, Elision, Elisions, Item, ItemTest, LeftOut, Part, Reason, Slot, number};
 use crate::math::View;
 use crate::scene::{Cull, Shadow, ShadowCull, ShadowFilter};
 use casters::Caster;
@@ -175,6 +175,15 @@ impl ShadowPass {
         self.faces().iter().flat_map(|face| &face.casters).collect::<BTreeSet<_>>().len()
     }
 
+    /// How many sides of a cube are drawn; `None` of parallel light.
+    #[must_use]
+    pub fn cube_sides(&self) -> Option<usize> {
+        match &self.maps {
+            Maps::Directional(_) => None,
+            Maps::Cube { faces, .. } => Some(faces.len()),
+        }
+    }
+
     /// Every map.
     #[must_use]
     pub fn faces(&self) -> &[Face] {
@@ -200,6 +209,8 @@ pub fn orthonormal_basis(n: DVec3) -> (DVec3, DVec3) {
 pub(super) struct Notes<'a> {
     /// Index into the scene's lights.
     pub(super) light: u32,
+    /// What of it may be left out.
+    pub(super) elide: Elisions,
     /// Where it is noted.
     pub(super) left_out: &'a mut Vec<LeftOut>,
 }
@@ -209,8 +220,13 @@ impl Notes<'_> {
         self.left_out.push(LeftOut { part: Part::Caster { light: self.light, instance }, reason });
     }
 
-    fn leave_out_side(&mut self, side: usize, reason: Reason) {
-        self.left_out.push(LeftOut { part: Part::Side { light: self.light, side }, reason });
+    /// Whether a side that nothing reads, or that holds nothing, is left out.
+    fn leaves_out_side(&mut self, side: usize, reason: Reason) -> bool {
+        let leaves = self.elide.contains(Elision::CubeSides);
+        if leaves {
+            self.left_out.push(LeftOut { part: Part::Side { light: self.light, side }, reason });
+        }
+        leaves
     }
 }
 

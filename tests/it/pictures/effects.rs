@@ -140,7 +140,7 @@ fn effects_of_the_document_give_the_same_bytes_from_a_caller() {
         for effect in &effects {
             let document = ball(background, &json!([effect]));
             let plan = planned(&document);
-            let neighbourhood: &Neighbourhood = &plan.post.passes[0].effect;
+            let neighbourhood: &Neighbourhood = plan.post.passes[0].effect.as_ref().expect("an effect");
             let own = drawn(&ball(background, &json!([])), &[neighbourhood.as_effect()]);
             assert!(own == Picture::of(&document), "{effect}, {background}");
         }

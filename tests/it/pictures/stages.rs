@@ -83,7 +83,7 @@ fn no_fragment_is_counted_twice_or_missed() {
         let counts = Picture::new(frame(&scene, &shaded));
         let number = |pixel: &[u8; 4]| (0u32..16).find(|n| heat(f64::from(*n)) == *pixel).expect("below 16");
         let sum: u64 = counts.pixels.iter().map(number).map(u64::from).sum();
-        assert_eq!(sum, frame(&scene, &samples(count)).stats.shaded, "{count} samples");
+        assert_eq!(sum, frame(&scene, &samples(count)).stats.shaded(), "{count} samples");
     }
 }
 

@@ -17,7 +17,7 @@ fn rugged(rng: &mut Random, resolution: u32) -> DirectionalMap {
             0.1 + slope * float(x) + noise[(x * 31 + y * 17) as usize % 97]
         }
     });
-    DirectionalMap { depth, filter: MapFilter::Hard }
+    DirectionalMap { depth, filter: MapFilter::Hard, elide: Elisions::ALL }
 }
 
 fn receiver(rng: &mut Random, resolution: u32) -> Receiver {
@@ -38,7 +38,7 @@ fn the_pyramid_answers_as_every_tap_would() {
     for resolution in [1, 50, 64, 200, 333] {
         let map = rugged(&mut rng, resolution);
         let pyramid = with_work(|work| Pyramid::over(&map.depth, work).unwrap());
-        let maps = Maps { depth: &map.depth, pyramid: &pyramid };
+        let maps = map.maps(&pyramid);
         for _ in 0..4000 {
             let receiver = receiver(&mut rng, resolution);
             let largest = if rng.below(3) == 0 { 80.0 } else { 3.0 };
@@ -71,7 +71,7 @@ fn a_search_that_the_pyramid_ends_would_have_ended_the_same() {
     for resolution in [64, 200, 333] {
         let map = rugged(&mut rng, resolution);
         let pyramid = with_work(|work| Pyramid::over(&map.depth, work).unwrap());
-        let maps = Maps { depth: &map.depth, pyramid: &pyramid };
+        let maps = map.maps(&pyramid);
         let per_depth = rng.between(5.0, 60.0);
         let size =
             SoftKernel { per_depth: [per_depth, per_depth * 0.7], rise_per_depth: 0.05, search_radius: None };
@@ -117,7 +117,7 @@ fn soft_shadows_are_finite_for_blockers_and_searches_of_every_size() {
     for per_depth in [0.0, 1e-30, 1.0, 1e6, 1e30] {
         for search_radius in [None, Some(0.0), Some(7.0), Some(1024.0)] {
             let size = SoftKernel { per_depth: [per_depth; 2], rise_per_depth: 0.25, search_radius };
-            let light = Soft { maps: Maps { depth: &map.depth, pyramid: &pyramid }, size: &size };
+            let light = Soft { maps: map.maps(&pyramid), size: &size };
             for receiver in &receivers {
                 let visibility =
                     dispatch!(Level::new(), simd => soft(simd, &light, &search, &filter, receiver));

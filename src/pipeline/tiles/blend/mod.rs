@@ -13,6 +13,7 @@ use super::layers::{AtEqualDepth, Layers, MOST_SAMPLES, Opaque, TileList, Window
 use crate::pipeline::shade;
 use crate::pipeline::stats::{Clock, TileTimes};
 use crate::pipeline::work::Work;
+use crate::plan::{Tally, Unit};
 use composite::{Over, Stacks};
 
 /// Buffers of one worker, kept between tiles.
@@ -22,6 +23,13 @@ pub struct Scratch {
     /// What each layer puts over what is behind it.
     over: Vec<Over>,
     stacks: Stacks,
+}
+
+impl Scratch {
+    /// What the blocks of its layers cost and were spared since it was last asked.
+    pub fn take_tally(&mut self) -> Tally {
+        self.layers.take_tally()
+    }
 }
 
 /// A tile before anything is blended over it.
@@ -113,7 +121,7 @@ impl Blend<'_> {
         let (level, shared) = (self.work.level, self.shared);
         let Scratch { layers, over, .. } = &mut *self.scratch;
         over.clear();
-        self.times.shaded += layers.list.len() as u64;
+        self.times.tally.count(Unit::Fragments, layers.list.len() as u64);
         layers.shade(
             level,
             self.tile,

@@ -1,9 +1,9 @@
 use super::*;
 use crate::math::{Projection, View};
-use crate::pipeline::geometry::Counts;
 use crate::pipeline::geometry::bin::TileGrid;
 use crate::pipeline::samples;
 use crate::pipeline::tiles::cover::{BlockDepths, IdTarget, cover};
+use crate::plan::Elisions;
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -31,7 +31,7 @@ fn collect(triangles: Vec<Triangle>, samples: u32) -> (Bins, Visibility, Fragmen
     let mut chunk = Chunk::default();
     chunk.triangles = triangles;
     let list: Vec<Entry> = (0..).take(chunk.triangles.len()).map(|i| (0, i)).collect();
-    let bins = Bins { grid: grid(samples), chunks: vec![chunk], counts: Counts::default() };
+    let bins = Bins::new(grid(samples), vec![chunk], Elisions::ALL);
     let region = Region::of_tile(&bins.grid, 0, 0);
     let (mut seen, mut blocks) = (Visibility::default(), BlockDepths::default());
     seen.clear(SIDE, samples as usize);

@@ -1,9 +1,9 @@
 use super::*;
 use crate::math::{Projection, View};
-use crate::pipeline::geometry::Counts;
 use crate::pipeline::geometry::bin::{Chunk, TileGrid};
 use crate::pipeline::samples;
 use crate::pipeline::tiles::cover::IdTarget;
+use crate::plan::Elisions;
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -26,7 +26,7 @@ fn bins(triangles: Vec<Triangle>, samples: u32) -> Bins {
     let mut chunk = Chunk::default();
     chunk.triangles = triangles;
     let grid = TileGrid::new(&view, 6, samples::pattern(samples));
-    Bins { grid, chunks: vec![chunk], counts: Counts::default() }
+    Bins::new(grid, vec![chunk], Elisions::ALL)
 }
 
 fn pile() -> impl Strategy<Value = Vec<Triangle>> {

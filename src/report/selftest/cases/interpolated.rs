@@ -8,7 +8,7 @@ use crate::pipeline::shade::light::LightSource;
 use crate::pipeline::shade::varyings::{Records, Source, Varyings, interpolate};
 use crate::pipeline::shade::{self, Fragment, Lighting, SurfaceShader};
 use crate::pipeline::shader::{Outputs, PixelShader, Visible};
-use crate::plan::Plan;
+use crate::plan::{Elisions, Plan};
 use crate::report::selftest::instruments::draw::{level, work};
 use crate::report::selftest::instruments::random::Random;
 use glam::{DVec2, DVec3};
@@ -37,7 +37,7 @@ pub fn document(positions: &[DVec3], extra: Value) -> Value {
 /// The geometry of a plan.
 pub fn bins(plan: &Plan) -> Bins {
     let grid = TileGrid::new(&plan.view, 6, samples::pattern(1));
-    geometry::run(&plan.items, &plan.view, grid, &work()).expect("nobody cancels")
+    geometry::run(&plan.items, &plan.view, grid, Elisions::ALL, &work()).expect("nobody cancels")
 }
 
 /// The edge functions of the corners at p, exact.
@@ -115,7 +115,8 @@ pub fn shaded(
 ) -> usize {
     let anchor = shade::anchor(plan.scene.bounds(plan.t), &plan.view);
     let lights = plan.lights.iter().map(|light| LightSource::new(light, &plan.view, anchor)).collect();
-    let lighting = Lighting { ambient: plan.ambient, lights, maps: &[], view: &plan.view, anchor };
+    let lighting =
+        Lighting { ambient: plan.ambient, lights, maps: &[], view: &plan.view, anchor, elide: Elisions::ALL };
     let (mut scratch, mut out, mut looked) = (shade::Scratch::default(), Outputs::default(), 0);
     visit(plan, random, anchor, |visible, points, source| {
         let shader = SurfaceShader { source, lighting: &lighting };

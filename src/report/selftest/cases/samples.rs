@@ -9,7 +9,7 @@ use crate::pipeline::shade::varyings::{self, Records, Source, Varyings};
 use crate::pipeline::tiles::Scratch;
 use crate::pipeline::tiles::cover::Region;
 use crate::pipeline::tiles::fragments::{Fragments, SampleOrder, triangle};
-use crate::plan::{Item, Surface};
+use crate::plan::{Item, Spared, Surface};
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::draw::level;
 use crate::report::selftest::instruments::oracle::coverage;
@@ -127,6 +127,7 @@ fn worst_excess(item: &Item, view: &View, samples: u32) -> (Worst, usize) {
         lit: false,
         receives_shadow: false,
         periodic_uv: false,
+        spared: Spared::default(),
     };
     let source = Source::new(item, &surface, &[], view, DVec3::ZERO);
     let nearest = samples::nearest_to_centre(samples);

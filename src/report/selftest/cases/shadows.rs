@@ -7,7 +7,7 @@ use crate::limits::Limits;
 use crate::pipeline::shade::BLOCK;
 use crate::pipeline::shade::varyings::Receivers;
 use crate::pipeline::shadow::{ShadowMap, render_maps};
-use crate::plan::FrameRequest;
+use crate::plan::{Elisions, FrameRequest};
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::box_on_floor::BoxOnFloor;
 use crate::report::selftest::instruments::closed_form::Camera;
@@ -254,7 +254,7 @@ pub fn outside_the_map_is_lit_and_its_border_is_part_of_it(ledger: &mut Ledger) 
     let mut document = roof.document();
     document["instances"]["box"]["receives_shadow"] = json!(false);
     let plan = plan(&scene(&document), &FrameRequest::default());
-    let maps = render_maps(&plan.shadows, &work()).expect("nobody cancels");
+    let maps = render_maps(&plan.shadows, Elisions::ALL, &work()).expect("nobody cancels");
     let map = &maps[0];
     let behind = 1e-3;
     for (inside, outside) in [
@@ -296,7 +296,7 @@ pub fn maps_are_the_same_wherever_the_camera_is(ledger: &mut Ledger) {
         document["lights"]["lamp"] = lamp.clone();
         let plan = plan(&scene(&document), &FrameRequest::default());
         let views: Vec<_> = plan.shadows.iter().flat_map(|pass| pass.faces()).map(|face| face.view).collect();
-        (views, draw.then(|| render_maps(&plan.shadows, &work()).expect("nobody cancels")))
+        (views, draw.then(|| render_maps(&plan.shadows, Elisions::ALL, &work()).expect("nobody cancels")))
     };
     let (views, first) = maps(0, true);
     assert!(views.len() > 2, "a sun and sides of a lamp");

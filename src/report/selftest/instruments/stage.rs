@@ -11,7 +11,7 @@ use crate::pipeline::geometry::{self, Bins};
 use crate::pipeline::samples;
 use crate::pipeline::tiles::cover::{self, BlockDepths, Region, Target};
 use crate::pipeline::tiles::{Scratch, tile_shift};
-use crate::plan::{Item, Opacity, Slot};
+use crate::plan::{Elisions, Item, Opacity, Slot};
 use crate::scene::Cull;
 use glam::{DMat3, DVec3, Vec3};
 use std::sync::Arc;
@@ -95,7 +95,7 @@ pub fn two_sided(mesh: Mesh) -> Item {
 /// Runs the geometry stage.
 pub fn bins(item: Item, view: &View, samples: u32) -> Bins {
     let grid = TileGrid::new(view, tile_shift(samples), samples::pattern(samples));
-    geometry::run(&[item], view, grid, &work()).expect("nobody cancels")
+    geometry::run(&[item], view, grid, Elisions::ALL, &work()).expect("nobody cancels")
 }
 
 /// Every set-up triangle in submission order.

@@ -40,7 +40,7 @@ fn a_surface_of_no_opacity_is_not_there() {
     let mut without = document;
     without["instances"].as_object_mut().expect("a map").remove("leaf");
     assert_eq!(Picture::of(&clear), Picture::of(&without));
-    let shaded = |document: &Value| frame(&scene(document), &FrameRequest::default()).stats.shaded;
+    let shaded = |document: &Value| frame(&scene(document), &FrameRequest::default()).stats.shaded();
     assert_eq!(shaded(&clear), shaded(&without));
 }
 

@@ -3,7 +3,7 @@
 use crate::pipeline::shade::BLOCK;
 use crate::pipeline::shade::varyings::Receivers;
 use crate::pipeline::shadow::{ShadowMap, render_maps};
-use crate::plan::FrameRequest;
+use crate::plan::{Elisions, FrameRequest};
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::box_on_floor::{BoxOnFloor, Seen};
 use crate::report::selftest::instruments::closed_form::{Camera, Ray, hit_box};
@@ -44,7 +44,7 @@ fn cage(boxes: &[(DVec3, f64)], shadow: &Value) -> ShadowMap {
         document["instances"][format!("box {i}")] = json!({ "mesh": "box", "translation": place.to_array(), "scale": size, "rotation_deg": [i, 2 * i, 3 * i] });
     }
     let plan = plan(&scene(&document), &FrameRequest::default());
-    render_maps(&plan.shadows, &work()).expect("nobody cancels").remove(0)
+    render_maps(&plan.shadows, Elisions::ALL, &work()).expect("nobody cancels").remove(0)
 }
 
 /// B38: sides without casters are lit, those behind a caster's side too.
