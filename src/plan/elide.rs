@@ -41,6 +41,8 @@ pub enum Elision {
     TurnedAway,
     /// Shadow taps that the depths around them decide.
     DecidedTaps,
+    /// Pixel by pixel work in tiles of a single colour.
+    PlainTiles,
     /// Sky behind what covers it.
     CoveredSky,
     /// Resolving pixels whose samples all see the same.
@@ -82,6 +84,8 @@ pub enum Unit {
     LitFragments,
     /// Shadow map taps.
     Taps,
+    /// Tiles whose pixels are resolved and written one by one.
+    PixelTiles,
     /// Pixels of the sky.
     SkyPixels,
     /// Pixels that are the mean of samples.
@@ -114,7 +118,7 @@ struct Facts {
 
 impl Elision {
     /// Every one, in the order of the passes.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::UnseenShadows,
         Self::DarkLights,
         Self::CubeSides,
@@ -130,6 +134,7 @@ impl Elision {
         Self::BlackSpecular,
         Self::TurnedAway,
         Self::DecidedTaps,
+        Self::PlainTiles,
         Self::CoveredSky,
         Self::UniformPixels,
         Self::NeutralEffects,
@@ -223,6 +228,12 @@ impl Elision {
                 Unit::Taps,
                 "where the least or greatest depth around a kernel decides, every tap says the same",
             ),
+            Self::PlainTiles => (
+                "plain_tiles",
+                "D13",
+                Unit::PixelTiles,
+                "pixels that see the same one colour go through the same effects to the same bytes",
+            ),
             Self::CoveredSky => (
                 "covered_sky",
                 "D12",
@@ -279,7 +290,7 @@ impl Elision {
 
 impl Unit {
     /// Every one.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Shadows,
         Self::Lights,
         Self::CubeSides,
@@ -294,6 +305,7 @@ impl Unit {
         Self::Highlights,
         Self::LitFragments,
         Self::Taps,
+        Self::PixelTiles,
         Self::SkyPixels,
         Self::Means,
         Self::Effects,
@@ -324,6 +336,7 @@ impl Unit {
             Self::Highlights => "highlights",
             Self::LitFragments => "lit_fragments",
             Self::Taps => "taps",
+            Self::PixelTiles => "tiles_by_pixel",
             Self::SkyPixels => "sky_pixels",
             Self::Means => "means",
             Self::Effects => "effects",

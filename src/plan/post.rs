@@ -69,6 +69,12 @@ pub enum Curve {
 }
 
 impl Pointwise {
+    /// Whether it is another for every pixel.
+    #[must_use]
+    pub fn needs_place(&self) -> bool {
+        matches!(self, Self::Vignette { .. })
+    }
+
     /// What a document calls the effect that it is made from.
     #[must_use]
     pub fn type_name(&self) -> &'static str {

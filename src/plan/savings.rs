@@ -2,7 +2,7 @@
 
 use super::passes::{counted, shown_unshaded};
 use super::{Elision, Filter, LeftOut, Part, Plan, PostChain, ShadowPass, Spared};
-use crate::scene::LightKind;
+use crate::scene::{Background, LightKind};
 
 /// An elision that a frame has use for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,6 +37,7 @@ impl Plan {
             | Elision::BlackSpecular
             | Elision::TurnedAway
             | Elision::DecidedTaps => self.saved_of_shading(elision),
+            Elision::PlainTiles => self.saved_tiles(),
             Elision::CoveredSky | Elision::UniformPixels => self.saved_of_pixels(elision),
             Elision::NeutralEffects | Elision::PointwisePasses => self.saved_of_post(elision),
         }
@@ -166,6 +167,12 @@ impl Plan {
         (!all.is_empty()).then(|| {
             format!("{} taps a lit pixel that is wholly in the light or in the shadow", all.join(" and "))
         })
+    }
+
+    fn saved_tiles(&self) -> Option<String> {
+        let is_plain = matches!(self.background, Background::Color(_) | Background::Transparent);
+        (is_plain && shown_unshaded(self.output).is_none())
+            .then(|| format!("all but one row of what of {} lies in tiles without triangles", self.picture()))
     }
 
     fn saved_of_pixels(&self, elision: Elision) -> Option<String> {

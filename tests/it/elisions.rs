@@ -101,6 +101,10 @@ fn fixture(elision: Elision) -> Value {
         }
         Elision::OutsideTriangles => document["meshes"]["floor"]["size"] = json!([60, 60]),
         Elision::ConstantMaps => document["materials"]["plain"]["diffuse_map"] = json!("dot"),
+        Elision::PlainTiles => {
+            document["environment"] = json!({ "background": { "type": "color", "color": [0.1, 0.2, 0.4] } });
+            document["render"]["width"] = json!(400);
+        }
         Elision::NeutralEffects => document["post"] = json!([{ "type": "blur", "radius": 0 }]),
         _ => {}
     }

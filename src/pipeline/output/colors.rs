@@ -85,11 +85,21 @@ impl Resolved<'_> {
 /// Encodes a tile after `steps`: clamp to 0–1, sRGB, `floor(255 x + ½)`. Alpha is straight.
 pub fn encode_tile(level: Level, resolved: &Resolved, steps: &[Pointwise], tile: Tile<[u8; 4]>) {
     let [left, top] = resolved.corner(tile.place);
+    if resolved.plain && !steps.iter().any(Pointwise::needs_place) {
+        return encode_plain(level, resolved, steps, tile);
+    }
     dispatch!(level, simd => {
         for (y, row) in tile.rows.into_iter().enumerate() {
             encode_row(simd, &resolved.row(y), steps, [left, top + y], row);
         }
     });
+}
+
+/// Encodes eight pixels of a tile in which all are the same.
+fn encode_plain(level: Level, resolved: &Resolved, steps: &[Pointwise], tile: Tile<[u8; 4]>) {
+    let mut eight = [[0; 4]; LANES];
+    dispatch!(level, simd => encode_row(simd, &resolved.row(0), steps, [0, 0], &mut eight));
+    tile.rows.into_iter().for_each(|row| row.fill(eight[0]));
 }
 
 /// Encodes a picture after `steps`, as [`encode_tile`] does.

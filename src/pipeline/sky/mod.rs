@@ -74,6 +74,16 @@ impl Background {
         matches!(self, Self::Transparent)
     }
 
+    /// What all of it looks like, if that is the same everywhere; as bright as radiance gets.
+    #[must_use]
+    pub fn plain(&self) -> Option<Vec3> {
+        match self {
+            Self::Color(color) => Some(color.min(Vec3::splat(BRIGHTEST))),
+            Self::Transparent => Some(Vec3::ZERO),
+            _ => None,
+        }
+    }
+
     /// Writes the colours of `pixels` (`y · side + x` within the tile) to their places, as bright as radiance
     /// gets.
     pub fn draw(&self, level: Level, pixels: &[u32], region: &Region, side: usize, out: &mut [Vec<f32>; 3]) {
@@ -91,8 +101,7 @@ impl Background {
     ) {
         let place = Place { region, side };
         match self {
-            Self::Color(color) => fill(pixels, color.min(Vec3::splat(BRIGHTEST)), out),
-            Self::Transparent => fill(pixels, Vec3::ZERO, out),
+            Self::Color(_) | Self::Transparent => fill(pixels, self.plain().unwrap_or_default(), out),
             Self::Gradient(gradient) => place.draw(simd, pixels, gradient, out),
             Self::Daylight(sky) => place.draw(simd, pixels, sky, out),
             Self::CubeMap(map) => place.draw(simd, pixels, map, out),

@@ -27,6 +27,7 @@ use crate::plan::{Draw, Elision, Item, ItemTest, Opacity, Plan, Tally, Unit};
 use blend::{Behind, Canvas};
 use cover::{BlockDepths, IdTarget, Region, Visibility};
 use fragments::{Entry, Fragments, SampleOrder, triangle};
+use glam::Vec3;
 use layers::{Layers, Opaque, TileList};
 
 /// log2 of a tile's side: smaller with many samples, so that a tile's buffers stay in L2.
@@ -306,6 +307,8 @@ pub struct Resolved<'a> {
     pub counts: Option<&'a [u32]>,
     /// Pixels from one row to the next.
     pub side: usize,
+    /// Whether every pixel looks the same.
+    pub plain: bool,
 }
 
 /// What is looked at: a tile's samples see the same for all outputs of it.
@@ -362,6 +365,13 @@ pub fn shade<P>(
     tile: Tile<P>,
     write: impl Fn(&Resolved, Tile<P>),
 ) -> TileTimes {
+    let plain = shared
+        .background
+        .plain()
+        .filter(|_| scratch.list.is_empty() && shared.lighting.elide.contains(Elision::PlainTiles));
+    if let Some(color) = plain {
+        return fill(shared, scratch, color, tile, write);
+    }
     let mut clock = Clock::start();
     let mut times = TileTimes::default();
     let level = work.level;
@@ -404,9 +414,37 @@ pub fn shade<P>(
         clock.lap();
     }
     let (alpha, counts) = (alpha.as_deref(), counts.as_deref());
-    write(&Resolved { colors: &scratch.colors, alpha, counts, side }, tile);
+    write(&Resolved { colors: &scratch.colors, alpha, counts, side, plain: false }, tile);
+    times.tally.count(Unit::PixelTiles, 1);
     times.tally.add(&scratch.take_shade_tally(&region));
     times.resolve += clock.lap();
+    times
+}
+
+/// Fills a tile in which nothing is drawn over a background of one colour.
+fn fill<P>(
+    shared: &Shared,
+    scratch: &mut Scratch,
+    color: Vec3,
+    tile: Tile<P>,
+    write: impl Fn(&Resolved, Tile<P>),
+) -> TileTimes {
+    let mut clock = Clock::start();
+    let mut times = TileTimes::default();
+    let side = 1usize << shared.bins.grid.tile_shift;
+    let area = Region::of_tile(&shared.bins.grid, tile.place[0], tile.place[1]).area();
+    for (channel, value) in scratch.colors.iter_mut().zip(color.to_array()) {
+        channel.clear();
+        channel.resize(side * side, value);
+    }
+    times.tally.count(Unit::SkyPixels, area as u64);
+    times.tally.spare(Elision::PlainTiles, 1);
+    times.sky = clock.lap();
+    let alpha = shared.background.is_transparent().then(|| vec![0.0; side * side]);
+    let counts = shared.counts.then(|| vec![0; side * side]);
+    let (alpha, counts) = (alpha.as_deref(), counts.as_deref());
+    write(&Resolved { colors: &scratch.colors, alpha, counts, side, plain: true }, tile);
+    times.resolve = clock.lap();
     times
 }
 
