@@ -28,6 +28,8 @@ async fn frames_and_their_passes_are_counted() {
             "{pass}"
         );
     }
+    assert_eq!(metric(&client, "rasterd_work_total{unit=\"triangles_set_up\"}").await, 3.0);
+    assert_eq!(metric(&client, "rasterd_work_spared_total{elision=\"clipping\"}").await, 3.0);
     assert_eq!(metric(&client, "rasterd_pass_seconds_count{pass=\"post\"}").await, 0.0);
     assert_eq!(metric(&client, "rasterd_queue_wait_seconds_count").await, 3.0);
     assert_eq!(metric(&client, "rasterd_scenes").await, 1.0);

@@ -83,6 +83,58 @@ async fn it_says_what_is_left_out_and_why() {
     }
 }
 
+/// What the plan says that an elision saves.
+fn saves<'a>(plan: &'a Value, name: &str) -> Option<&'a str> {
+    let elisions = plan["elisions"].as_array().expect("a list");
+    elisions.iter().find(|elision| elision["name"] == name)?["saves"].as_str()
+}
+
+#[tokio::test]
+async fn it_says_what_is_saved() {
+    let (client, plan) = planned(&studio(), "").await;
+    for (name, what) in [
+        ("dark_lights", "one term of the sum of light"),
+        ("cube_sides", "64² texels of depth"),
+        ("outside_instances", "12 triangles"),
+        ("absent_maps", "a fragment in 3 of 3 draws"),
+        ("black_specular", "for each of 2 lights on each fragment of 1 of 3 draws"),
+        ("decided_taps", "18 + 36 and 16 taps"),
+        ("covered_sky", "64 × 48 pixels"),
+        ("uniform_pixels", "a mean of 4 samples"),
+        ("neutral_effects", "a pass over 64 × 48 pixels"),
+        ("pointwise_passes", "a pass for each of 3 steps"),
+    ] {
+        let told = saves(&plan, name).unwrap_or_default();
+        assert!(told.contains(what), "{name}: {told}");
+    }
+    assert_eq!((saves(&plan, "unseen_shadows"), saves(&plan, "constant_maps")), (None, None));
+    let left_out = plan["left_out"].as_array().expect("a list");
+    let behind = left_out.iter().find(|left| left["what"] == "instance \"behind\"").expect("an entry");
+    assert_eq!(behind["elision"], "outside_instances");
+    assert!(behind["saves"].as_str().is_some_and(|saves| saves.contains("12 triangles")), "{behind}");
+    let hidden = left_out.iter().find(|left| left["what"] == "instance \"hidden\"").expect("an entry");
+    assert_eq!((&hidden["elision"], &hidden["saves"]), (&Value::Null, &Value::Null));
+
+    let general = client.get("/scenes/t/plan?elide=none").await.json();
+    assert_eq!(general["elisions"], json!([]));
+    let kept = general["left_out"].as_array().expect("a list");
+    assert!(kept.iter().all(|left| left["elision"].is_null()), "{kept:#?}");
+    let lights: Vec<&Value> =
+        general["lights"].as_array().expect("a list").iter().map(|light| &light["name"]).collect();
+    assert_eq!(lights, ["lamp", "off", "out", "sun"]);
+}
+
+#[tokio::test]
+async fn what_is_left_out_changes_no_byte_and_no_tag() {
+    let (client, _) = planned(&studio(), "").await;
+    let elided = client.get("/scenes/t/frame.png").await;
+    for elide in ["none", "all", "clipping,decided_taps"] {
+        let frame = client.get(&format!("/scenes/t/frame.png?elide={elide}")).await;
+        assert!(frame.body == elided.body, "{elide}");
+        assert_eq!(frame.header("etag"), elided.header("etag"), "{elide}");
+    }
+}
+
 #[tokio::test]
 async fn it_says_what_is_drawn_and_how() {
     let (_, plan) = planned(&studio(), "").await;

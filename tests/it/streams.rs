@@ -405,6 +405,7 @@ async fn events_tell_what_each_frame_was() {
     assert_eq!((&first["number"], &first["revision"], &first["watchers"]), (&json!(1), &json!(1), &json!(0)));
     assert_eq!((&first["width"], &first["height"], &first["fps"]), (&json!(40), &json!(24), &json!(1)));
     assert_eq!(first["counts"]["triangles"], 1);
+    assert_eq!((&first["work"]["triangles_set_up"], &first["spared"]["clipping"]), (&json!(1), &json!(1)));
     for pass in ["queue", "plan", "raster", "shade", "encode"] {
         assert!(first["milliseconds"][pass].is_number(), "{pass}: {first}");
     }
