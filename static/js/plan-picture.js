@@ -29,7 +29,7 @@ function contentOf(plan, frame) {
   const { settings, bytes } = plan;
   const megabytes = (bytes / 1e6).toFixed(1);
   const text = `${settings.width} × ${settings.height} pixels, ${settings.samples} samples each; ${megabytes} MB of working memory.`;
-  return [element("p", {}, text), picture(plan, frame), leftOut(plan.left_out), drawTable(plan.draws)];
+  return [element("p", {}, text), picture(plan, frame), leftOut(plan.left_out), spared(plan.elisions), drawTable(plan.draws)];
 }
 
 function picture(plan, frame) {
@@ -111,8 +111,18 @@ const drawText = ({ instance, triangles, transparent }) =>
 
 function leftOut(entries) {
   if (entries.length === 0) return element("p", {}, "Nothing is left out.");
-  const items = entries.map(({ what, reason }) => element("li", {}, element("strong", {}, what), `: ${reason}`));
+  const saving = (saves) => (saves ? `; saves ${saves}` : "");
+  const items = entries.map(({ what, reason, saves }) =>
+    element("li", {}, element("strong", {}, what), `: ${reason}${saving(saves)}`));
   return element("section", {}, element("h3", {}, "Left out"), element("ul", { className: "left-out" }, ...items));
+}
+
+/** What the passes are spared on the way, and why the picture stays the same. */
+function spared(elisions) {
+  if (elisions.length === 0) return element("p", {}, "Nothing is spared: every step runs.");
+  const items = elisions.map(({ name, saves, exact }) =>
+    element("li", {}, element("strong", {}, name.replaceAll("_", " ")), `: ${saves}, since ${exact}`));
+  return element("details", {}, element("summary", {}, "Spared on the way"), element("ul", { className: "left-out" }, ...items));
 }
 
 /** Which way through the shading each instance takes. */
