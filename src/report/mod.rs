@@ -17,6 +17,7 @@ pub mod html;
 pub mod machine;
 mod make;
 pub mod plot;
+pub mod random;
 pub mod reference;
 pub mod selftest;
 pub mod setting;

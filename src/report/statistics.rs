@@ -1,5 +1,6 @@
 //! Medians with intervals, and straight lines through points.
 
+use super::random::Random;
 use serde::Serialize;
 
 /// What many measurements of one quantity say.
@@ -69,7 +70,7 @@ fn quantile(sorted: &[f64], q: f64) -> f64 {
 /// The percentile bootstrap. Source: B. Efron, "Bootstrap Methods: Another Look at the Jackknife", Annals of
 /// Statistics 7(1), 1979.
 fn median_interval(sorted: &[f64]) -> [f64; 2] {
-    let mut random = SplitMix(0);
+    let mut random = Random(0);
     let mut medians: Vec<f64> = (0..RESAMPLINGS)
         .map(|_| {
             let drawn: Vec<f64> = sorted.iter().map(|_| sorted[random.below(sorted.len())]).collect();
@@ -93,36 +94,6 @@ pub fn median(values: &[f64]) -> f64 {
 #[must_use]
 pub fn percentile(values: &[f64], q: f64) -> f64 {
     if values.is_empty() { 0.0 } else { quantile(&sorted(values), q) }
-}
-
-/// Numbers that look random and are the same in every run.
-///
-/// Source: G. Steele et al., "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
-#[derive(Clone, Debug)]
-pub struct SplitMix(pub u64);
-
-impl SplitMix {
-    /// 64 of them.
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// One of 0, 1, … n − 1.
-    #[expect(clippy::cast_possible_truncation, reason = "less than n")]
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
-    }
-
-    /// Puts `items` into another order (Fisher and Yates).
-    pub fn shuffle<T>(&mut self, items: &mut [T]) {
-        for last in (1..items.len()).rev() {
-            items.swap(last, self.below(last + 1));
-        }
-    }
 }
 
 /// A straight line through points.
@@ -180,14 +151,5 @@ mod tests {
         assert!((line.slope + 0.5).abs() < 1e-12 && (line.intercept - 3.0).abs() < 1e-12);
         assert!(line.standard_error < 1e-9);
         assert_eq!(Line::through(&points[..2]), None);
-    }
-
-    #[test]
-    fn a_shuffled_list_holds_the_same() {
-        let mut items: Vec<u8> = (0..50).collect();
-        SplitMix(1).shuffle(&mut items);
-        assert!(items.windows(2).any(|pair| pair[0] > pair[1]));
-        items.sort_unstable();
-        assert!(items.into_iter().eq(0..50));
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Every round draws each setting once, in another order, so that heat and neighbours fall on all of them alike.
 
+use super::random::Random;
 use super::setting::Setting;
-use super::statistics::{SplitMix, Spread, median};
+use super::statistics::{Spread, median};
 use super::subject::Subject;
 use crate::encode;
 use crate::pipeline::{self, Cancelled, Work};
@@ -90,7 +91,7 @@ pub fn interleaved(
 ) -> Result<Vec<Vec<Sample>>, Cancelled> {
     let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); settings.len()];
     let mut order: Vec<usize> = (0..settings.len()).collect();
-    let mut random = SplitMix(0x5eed);
+    let mut random = Random(0x5eed);
     for round in 0..rounds {
         if round > 0 && Instant::now() >= until {
             break;

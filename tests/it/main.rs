@@ -29,4 +29,5 @@ mod streams;
 mod turntables;
 mod unchanged;
 
-use rasterd::report::selftest::instruments::{box_on_floor, closed_form, draw, random};
+use rasterd::report::random;
+use rasterd::report::selftest::instruments::{box_on_floor, closed_form, draw};

@@ -10,7 +10,7 @@ use crate::random::Random;
 use rasterd::math::colour::srgb_from_linear;
 use rasterd::pipeline::Pixels;
 use rasterd::plan::{FrameRequest, Output};
-use rasterd::report::reference::{Effort, Masks, Reference, Subject};
+use rasterd::report::reference::{Aim, Effort, Masks, Reference, Subject};
 use rasterd::scene::{Files, Scene, demo, gallery};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 const SIZE: [u32; 2] = [160, 120];
 
 /// Enough for smooth pixels; the others are not looked at.
-const EFFORT: Effort = Effort { base: 16, most: 64, noise: 1.0 / 512.0 };
+const EFFORT: Effort = Effort { base: 16, most: 64, noise: 1.0 / 512.0, aim: Aim::Pixel };
 
 fn request(output: Output) -> FrameRequest {
     let [width, height] = SIZE.map(Some);
@@ -102,8 +102,8 @@ fn plain(masks: &Masks, pixel: usize) -> bool {
 }
 
 /// A picture of 16 × 16 texels, all four channels anything from `least` on.
-fn blotches(case: &str, least: u64) -> Files {
-    let mut random = Random::new(case, 0x0b10_7c4e);
+fn blotches(least: u64) -> Files {
+    let mut random = Random(0x0b10_7c4e);
     let mut code = || u8::try_from(least + random.bits() % (256 - least)).expect("a code");
     let texels: Vec<[u8; 4]> = (0..256).map(|_| [code(), code(), code(), code()]).collect();
     file("map.png", png(16, 16, |x, y| texels[(y * 16 + x) as usize]))
@@ -172,22 +172,22 @@ fn textures_are_what_the_reference_says() {
     let document = close_by(
         &json!({ "diffuse_map": "map", "emissive": [0.3, 0.3, 0.3], "emissive_map": "map", "alpha_cutoff": 0 }),
     );
-    compare("reference: texture", &scene_with(&document, &blotches("texture", 0)), &BLOTCHED, all, 0.5);
+    compare("reference: texture", &scene_with(&document, &blotches(0)), &BLOTCHED, all, 0.5);
 }
 
 #[test]
 fn what_shows_through_is_what_the_reference_says() {
     let document = close_by(&json!({ "diffuse_map": "map", "opacity": 0.8, "double_sided": true }));
-    compare("reference: blending", &scene_with(&document, &blotches("blending", 0)), &BLOTCHED, all, 0.3);
+    compare("reference: blending", &scene_with(&document, &blotches(0)), &BLOTCHED, all, 0.3);
     let mut clear = document;
     clear["environment"]["background"] = json!({ "type": "transparent" });
-    compare("reference: transparent", &scene_with(&clear, &blotches("transparent", 0)), &BLOTCHED, all, 0.3);
+    compare("reference: transparent", &scene_with(&clear, &blotches(0)), &BLOTCHED, all, 0.3);
 }
 
 #[test]
 fn relief_is_what_the_reference_says() {
     // Blue from 128 on is all that a normal map asks for; a quarter of its range keeps slopes gentle.
-    let files = blotches("relief", 100);
+    let files = blotches(100);
     let normals = close_by(&json!({ "normal_map": "map", "specular": [0.3, 0.3, 0.3], "shininess": 10 }));
     compare("reference: normal map", &scene_with(&normals, &files), &BLOTCHED, all, 0.3);
     let heights = close_by(&json!({ "bump_map": "map", "bump_scale": 0.02 }));
@@ -198,7 +198,7 @@ fn relief_is_what_the_reference_says() {
 /// a pixel sees the same. It is one triangle: on an edge the pipeline would shade a pixel at a sample of its
 /// border, where the next texel begins.
 fn noise(post: &[Value]) -> Arc<Scene> {
-    let mut random = Random::new("effects", 0x0b10_7c4e);
+    let mut random = Random(0x0b10_7c4e);
     let [width, height] = SIZE.map(|side| side + 2);
     let mut code = || u8::try_from(random.bits() % 256).expect("a code");
     let texels: Vec<[u8; 4]> = (0..width * height).map(|_| [code(), code(), code(), 255]).collect();

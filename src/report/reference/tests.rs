@@ -4,6 +4,7 @@ use super::*;
 use crate::limits::Limits;
 use crate::math::colour::linear_from_srgb;
 use crate::math::simd::Level;
+use crate::pipeline::Order;
 use crate::plan::FrameRequest;
 use crate::scene::{Document, Files, compile, framing};
 use glam::DVec3;
@@ -22,7 +23,7 @@ fn scene_with(document: &Value, files: &Files) -> Scene {
 
 fn draw_on(threads: usize, scene: &Scene, size: [u32; 2], samples: u32) -> Reference {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new() };
+    let work = Work { pool: &pool, cancel: &AtomicBool::new(false), level: Level::new(), order: Order::Rows };
     let camera = framing::resolve(scene, &FrameRequest::default(), size[0], size[1]).expect("a camera");
     let subject = Subject { scene, camera, size, t: 0.0, background: &scene.background, shading: None };
     let effort = Effort { base: samples, most: samples, noise: 0.0, aim: Aim::Pixel };
@@ -378,7 +379,7 @@ fn samples_go_where_they_matter() {
         Subject { scene: &scene, camera, size, t: 0.0, background: &scene.background, shading: None };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
     let (cancel, most) = (AtomicBool::new(false), std::sync::Mutex::new(0.0_f64));
-    let work = Work { pool: &pool, cancel: &cancel, level: Level::new() };
+    let work = Work { pool: &pool, cancel: &cancel, level: Level::new(), order: Order::Rows };
     let effort = Effort { base: 16, most: 256, noise: 1e-3, aim: Aim::Pixel };
     let progress = |share: f64| {
         let mut most = most.lock().expect("nobody panics");

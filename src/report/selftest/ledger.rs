@@ -1,6 +1,6 @@
 //! Where a check writes down what it has measured.
 
-use super::instruments::random::Random;
+use crate::report::random::Random;
 use serde::Serialize;
 
 /// How long a run may take.
@@ -135,9 +135,9 @@ impl Ledger {
         self.at_most(setting, metric, count as f64, 0.0);
     }
 
-    /// Notes a claim that is true or not.
-    pub fn holds(&mut self, setting: &str, claim: &str, is_so: bool) {
-        self.none_of(setting, claim, usize::from(!is_so), 1);
+    /// Notes whether all is well; `fault` names what is counted where it is not.
+    pub fn holds(&mut self, setting: &str, fault: &str, is_well: bool) {
+        self.none_of(setting, fault, usize::from(!is_well), 1);
     }
 
     /// Notes a value that has no bound.

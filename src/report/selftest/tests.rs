@@ -68,7 +68,7 @@ tests! {
     b47_models "B47"
     b48_sizes "B48"
     b49_the_same_to_the_byte "B49"
-    b50_float_state "B50"
+    b50_every_build_to_the_byte "B50"
 }
 
 #[test]

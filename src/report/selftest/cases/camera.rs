@@ -3,10 +3,10 @@
 use super::coverage::SNAP_BOUND;
 use crate::math::{Projection, View};
 use crate::plan::{FrameRequest, Output};
+use crate::report::random::Random;
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::draw;
 use crate::report::selftest::instruments::oracle::geometric::{self, Solid};
-use crate::report::selftest::instruments::random::Random;
 use crate::report::selftest::instruments::worst::Worst;
 use crate::scene::framing;
 use glam::DVec3;

@@ -1,10 +1,10 @@
 //! Coverage: every sample belongs to exactly the triangle that covers it (B1 – B6).
 
 use crate::math::View;
+use crate::report::random::Random;
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::draw;
 use crate::report::selftest::instruments::oracle::{coverage, geometric, sample_positions};
-use crate::report::selftest::instruments::random::Random;
 use crate::report::selftest::instruments::stage::*;
 use glam::DVec3;
 use serde_json::json;

@@ -3,11 +3,11 @@
 
 use crate::math::View;
 use crate::pipeline::geometry::setup::Triangle;
+use crate::report::random::Random;
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::closed_form::{Camera, codes_apart};
 use crate::report::selftest::instruments::draw::Picture;
 use crate::report::selftest::instruments::draw::pool;
-use crate::report::selftest::instruments::random::Random;
 use crate::report::selftest::instruments::stage::*;
 use crate::report::selftest::instruments::worst::{U, Worst};
 use glam::DVec3;

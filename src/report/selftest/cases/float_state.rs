@@ -1,10 +1,10 @@
 //! What a thread or a compiler could change about floats (B50).
 
-use super::determinism::{both, busy, glassy, noise};
+use super::determinism::{busy, glassy, noise, small};
 use crate::pipeline::Pixels;
 use crate::plan::{FrameRequest, Output};
 use crate::report::selftest::Ledger;
-use crate::report::selftest::instruments::draw::{frame, output, pool, scene_with};
+use crate::report::selftest::instruments::draw::{bytes_of, frame, output, pool, scene_with};
 use serde_json::{Value, json};
 use std::hint::black_box;
 
@@ -37,14 +37,7 @@ const HASHES: [(&str, &str); 6] = [
 ];
 
 fn hash(pixels: &Pixels) -> String {
-    let bytes: Vec<u8> = match pixels {
-        Pixels::Rgba8 { pixels, .. } => pixels.as_flattened().to_vec(),
-        Pixels::Gray16(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-        Pixels::Rgba32F { pixels, .. } => {
-            pixels.as_flattened().iter().flat_map(|value| value.to_bits().to_le_bytes()).collect()
-        }
-    };
-    blake3::hash(&bytes).to_hex()[..32].to_owned()
+    blake3::hash(&bytes_of(pixels)).to_hex()[..32].to_owned()
 }
 
 /// The pictures that [`HASHES`] are of, in their order.
@@ -53,7 +46,7 @@ fn pictures() -> [(Value, FrameRequest); 6] {
     let mut effects = busy.clone();
     effects["post"] =
         json!([{ "type": "bloom" }, { "type": "tonemap", "operator": "aces" }, { "type": "fxaa" }]);
-    let of = |what: Output, count: u32| both(&output(what), count);
+    let of = |what: Output, count: u32| small(&output(what), count);
     [
         (busy.clone(), of(Output::Color, 4)),
         (glassy(), of(Output::Color, 8)),

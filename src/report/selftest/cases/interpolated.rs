@@ -9,8 +9,8 @@ use crate::pipeline::shade::varyings::{Records, Source, Varyings, interpolate};
 use crate::pipeline::shade::{self, Fragment, Lighting, SurfaceShader};
 use crate::pipeline::shader::{Outputs, PixelShader, Visible};
 use crate::plan::{Elisions, Plan};
+use crate::report::random::Random;
 use crate::report::selftest::instruments::draw::{level, work};
-use crate::report::selftest::instruments::random::Random;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 

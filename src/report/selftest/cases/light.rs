@@ -3,11 +3,11 @@
 use super::interpolated::{corners, document, shaded, weights};
 use crate::limits::Limits;
 use crate::pipeline::geometry::setup::{NOT_CLIPPED, Triangle};
+use crate::plan::Elisions;
 use crate::plan::FrameRequest;
-use crate::plan::request::Elide;
+use crate::report::random::Random;
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::draw::{plan, scene};
-use crate::report::selftest::instruments::random::Random;
 use crate::report::selftest::instruments::worst::Worst;
 use crate::scene::{Document, Files, SceneError, compile};
 use glam::DVec3;
@@ -136,7 +136,7 @@ pub fn b32_a_light_without_intensity_is_left_out(ledger: &mut Ledger) {
         json!({ "type": "directional", "direction": [0, -1, 0], "enabled": false }),
     ] {
         let setting = light.to_string();
-        let request = FrameRequest { elide: Some(Elide::All), ..FrameRequest::default() };
+        let request = FrameRequest { elide: Some(Elisions::ALL), ..FrameRequest::default() };
         let left = plan(&scene(&floor(light)), &request).lights.len();
         ledger.none_of(&setting, "lights without light that are kept", left, 1);
     }

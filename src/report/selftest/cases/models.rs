@@ -3,11 +3,12 @@
 use crate::import::obj::{self, ObjOptions};
 use crate::import::{image, mtl};
 use crate::limits::Limits;
+use crate::plan::Item;
+use crate::report::random::Random;
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::draw::png;
 use crate::report::selftest::instruments::oracle::geometric::BAND;
 use crate::report::selftest::instruments::oracle::sample_positions;
-use crate::report::selftest::instruments::random::Random;
 use crate::report::selftest::instruments::stage::*;
 use glam::DVec2;
 use std::fmt::Write;
@@ -74,35 +75,47 @@ fn inside(polygon: &[DVec2], p: DVec2) -> Option<bool> {
     Some(crossings % 2 == 1)
 }
 
+/// A model with the polygon as its one face, before the flat view.
+fn one_face(polygon: &[DVec2]) -> String {
+    let (mut text, mut face) = (String::new(), "f".to_owned());
+    for (i, p) in polygon.iter().enumerate() {
+        let p = on_screen([p.x * 256.0, p.y * 256.0], 0.5);
+        writeln!(text, "v {} {} {}", p.x, p.y, p.z).expect("memory takes it");
+        write!(face, " {}", i + 1).expect("memory takes it");
+    }
+    text + &face
+}
+
+/// Pixels in a row and a column of the pictures that show stars.
+const SIDE: u32 = 44;
+
+/// How many samples of a star its triangles do not cover exactly once, or cover outside of it; and of how many.
+fn wrongly_covered(polygon: &[DVec2]) -> (usize, usize) {
+    let mesh = obj::read(one_face(polygon).as_bytes(), &ObjOptions::default()).expect("a face").mesh;
+    let item = Item { origin: mesh.origin, ..two_sided(mesh) };
+    let counts = cover_counts(&bins(item, &flat_view(SIDE, SIDE), 4), 4);
+    let offsets = sample_positions(4);
+    let (mut wrong, mut looked) = (0, 0);
+    for (&count, i) in counts.iter().zip(0u32..) {
+        let corner = [i / 4 % SIDE, i / 4 / SIDE].map(|c| f64::from(c) - f64::from(SIDE / 2));
+        let offset = offsets[i as usize % 4].map(|c| f64::from(c) / 256.0);
+        if let Some(is_inside) = inside(polygon, DVec2::from_array(corner) + DVec2::from_array(offset)) {
+            looked += 1;
+            wrong += usize::from(count != u32::from(is_inside));
+        }
+    }
+    (wrong, looked)
+}
+
 /// Triangles of a face cover what the face covers, and no point of it twice.
 pub fn concave_faces_are_covered_exactly_once(ledger: &mut Ledger) {
     let mut rng = ledger.random(0xb47);
-    let view = flat_view(44, 44);
     let (mut wrong, mut looked) = (0, 0);
     for corners in 4..64 {
         for _ in 0..ledger.effort.pick(4, 40) {
             let place = DVec2::new(rng.between(-2.0, 2.0), rng.between(-2.0, 2.0));
-            let polygon = star(&mut rng, corners, place);
-            let (mut text, mut face) = (String::new(), "f".to_owned());
-            for (i, p) in polygon.iter().enumerate() {
-                let p = on_screen([p.x * 256.0, p.y * 256.0], 0.5);
-                writeln!(text, "v {} {} {}", p.x, p.y, p.z).expect("memory takes it");
-                write!(face, " {}", i + 1).expect("memory takes it");
-            }
-            let model = obj::read((text + &face).as_bytes(), &ObjOptions::default()).expect("a face");
-            let origin = model.mesh.origin;
-            let item = crate::plan::Item { origin, ..two_sided(model.mesh) };
-            let counts = cover_counts(&bins(item, &view, 4), 4);
-            let offsets = sample_positions(4);
-            for (i, &count) in counts.iter().enumerate() {
-                let corner = [i / 4 % 44, i / 4 / 44].map(|c| c as f64 - 22.0);
-                let offset = offsets[i % 4].map(|c| f64::from(c) / 256.0);
-                let p = DVec2::new(corner[0] + offset[0], corner[1] + offset[1]);
-                if let Some(is_inside) = inside(&polygon, p) {
-                    looked += 1;
-                    wrong += usize::from(count != u32::from(is_inside));
-                }
-            }
+            let (more, of) = wrongly_covered(&star(&mut rng, corners, place));
+            (wrong, looked) = (wrong + more, looked + of);
         }
     }
     ledger.none_of("faces of 4 to 63 corners", "samples not covered exactly once", wrong, looked);

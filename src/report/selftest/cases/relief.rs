@@ -4,11 +4,11 @@ use crate::model::texture::{ColorSpace, Filter, Image, Texture, Wrap};
 use crate::pipeline::shade::relief::tilt;
 use crate::pipeline::shade::texture::{Coordinates, sample_normals};
 use crate::pipeline::shade::{BLOCK, varyings::Varyings};
-use crate::plan::request::Elide;
+use crate::plan::Elisions;
 use crate::plan::{FrameRequest, Heights, Relief};
+use crate::report::random::Random;
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::draw::{Picture, file, frame, level, plan, png, scene_with};
-use crate::report::selftest::instruments::random::Random;
 use crate::report::selftest::instruments::worst::{U, Worst};
 use crate::scene::Files;
 use glam::{DVec3, Vec3};
@@ -218,7 +218,7 @@ pub fn b29_maps_that_change_nothing_are_left_out_and_no_byte_differs(ledger: &mu
         ("bump scale 0", json!({ "bump_map": "map", "bump_scale": 0 }), &rough),
     ] {
         let document = still(extra);
-        let request = FrameRequest { elide: Some(Elide::All), ..FrameRequest::default() };
+        let request = FrameRequest { elide: Some(Elisions::ALL), ..FrameRequest::default() };
         let plan = plan(&scene_with(&document, files), &request);
         let is_left_out = plan.draws.iter().all(|draw| draw.surface.relief.is_none());
         ledger.holds(case, "maps without effect that are kept", is_left_out);

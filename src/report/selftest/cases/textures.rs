@@ -243,6 +243,6 @@ pub fn a_floor_to_the_horizon_fades_to_its_mean(ledger: &mut Ledger) {
             worst.note((f64::from(pixel[0]) - mean).abs());
         }
     }
-    ledger.at_least("", "pixels of the far field", f64::from(looked), 500.0);
+    assert!(looked > 500, "{looked} pixels are too few to show anything");
     ledger.at_most("", "difference from the mean in codes", worst.largest(), 1.0);
 }

@@ -164,6 +164,18 @@ pub fn values(frame: Frame) -> Vec<u16> {
     values
 }
 
+/// Every bit of a frame's pixels, so that −0 is not 0 and what is not a number is itself.
+#[must_use]
+pub fn bytes_of(pixels: &Pixels) -> Vec<u8> {
+    match pixels {
+        Pixels::Rgba8 { pixels, .. } => pixels.as_flattened().to_vec(),
+        Pixels::Rgba32F { pixels, .. } => {
+            pixels.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect()
+        }
+        Pixels::Gray16(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+    }
+}
+
 /// Encodes texels as the PNG file that a client would upload.
 pub fn png(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
     let image = image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(texel(x, y)));

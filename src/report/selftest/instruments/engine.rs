@@ -2,7 +2,7 @@
 
 use crate::math::simd::Level;
 use crate::pipeline::{Order, Work};
-use crate::plan::request::Elide;
+use crate::plan::Elisions;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
@@ -19,7 +19,7 @@ pub struct Engine {
     /// In which order tiles are handed out.
     pub order: Order,
     /// What plans may leave out where a request does not say.
-    pub elide: Elide,
+    pub elide: Elisions,
 }
 
 thread_local! {
@@ -29,7 +29,7 @@ thread_local! {
 /// Two threads at the machine's best SIMD level.
 impl Default for Engine {
     fn default() -> Self {
-        Self { threads: 2, level: Level::new(), order: Order::Rows, elide: Elide::All }
+        Self { threads: 2, level: Level::new(), order: Order::Rows, elide: Elisions::ALL }
     }
 }
 

@@ -11,6 +11,5 @@ pub mod closed_form;
 pub mod draw;
 pub mod engine;
 pub(super) mod oracle;
-pub mod random;
 pub(super) mod stage;
 pub mod worst;

@@ -1,7 +1,6 @@
 //! Drives the stages one at a time, as a frame does, and shows what they hand on.
 
 use super::draw::{level, work};
-use super::random::Random;
 use crate::math::simd::*;
 use crate::math::{Bounds, Projection, View};
 use crate::model::{Mesh, Part};
@@ -12,6 +11,7 @@ use crate::pipeline::samples;
 use crate::pipeline::tiles::cover::{self, BlockDepths, Region, Target};
 use crate::pipeline::tiles::{Scratch, tile_shift};
 use crate::plan::{Elisions, Item, Opacity, Slot};
+use crate::report::random::Random;
 use crate::scene::Cull;
 use glam::{DMat3, DVec3, Vec3};
 use std::sync::Arc;

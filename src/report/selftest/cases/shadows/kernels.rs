@@ -2,7 +2,7 @@
 
 use super::{SLOPES, lit_plane, setting, visible};
 use crate::pipeline::shadow::render_maps;
-use crate::plan::FrameRequest;
+use crate::plan::{Elisions, FrameRequest};
 use crate::report::selftest::Ledger;
 use crate::report::selftest::instruments::box_on_floor::BoxOnFloor;
 use crate::report::selftest::instruments::draw::{Picture, plan, scene, work};
@@ -208,7 +208,7 @@ pub fn soft_shadows_lie_between_light_and_dark_whatever_blocks(ledger: &mut Ledg
             }
             document["lights"]["sun"]["shadow"] = shadow;
             let plan = plan(&scene(&document), &FrameRequest::default());
-            let maps = render_maps(&plan.shadows, &work()).expect("nobody cancels");
+            let maps = render_maps(&plan.shadows, Elisions::ALL, &work()).expect("nobody cancels");
             let (mut beyond, mut looked) = (0, 0);
             for place in across.iter().flat_map(|&x| across.iter().map(move |&y| [x, y])) {
                 for depth in depths {

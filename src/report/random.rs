@@ -2,7 +2,10 @@
 
 /// SplitMix64. Source: G. Steele et al., "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
 #[derive(Clone, Debug)]
-pub struct Random(/** The seed, and the state after it. */ pub u64);
+pub struct Random(
+    /// The seed, and later what has become of it.
+    pub u64,
+);
 
 impl Random {
     /// 64 bits.
@@ -42,5 +45,26 @@ impl Random {
                 return v.normalize();
             }
         }
+    }
+
+    /// Puts `items` into another order (Fisher and Yates).
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            items.swap(last, self.below(last + 1));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shuffled_list_holds_the_same() {
+        let mut items: Vec<u8> = (0..50).collect();
+        Random(1).shuffle(&mut items);
+        assert!(items.windows(2).any(|pair| pair[0] > pair[1]));
+        items.sort_unstable();
+        assert!(items.into_iter().eq(0..50));
     }
 }
