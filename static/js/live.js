@@ -1,5 +1,6 @@
 // The live view: the stream of the open scene, and what the server tells of each of its frames.
 
+import { same } from "./merge.js";
 import { Picture } from "./picture.js";
 import { Problem, ask, scenePath } from "./server.js";
 
@@ -25,7 +26,8 @@ const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 /**
  * Events:
  * - `frame`: the stream shows a frame; `detail` is what the server says of it.
- * - `query`: size or output changed.
+ * - `query`: size, output, budget or time changed.
+ * - `report`: how far a report on the open scene is; `detail` is `{stage, done}`, the latter 0–1.
  * - `lost`, `back`: the connection.
  * - `problem`: the server cannot make this picture; `detail.problem`.
  */
@@ -39,6 +41,8 @@ export class Live extends EventTarget {
   #view;
   #picture;
   #output = "color";
+  #budget = null;
+  #frozenAt = null;
   #events = null;
   /** Grows with each start and stop, so that what belongs to an older one can tell. */
   #turn = 0;
@@ -79,6 +83,29 @@ export class Live extends EventTarget {
     this.#requery();
   }
 
+  /** What a picture may cost or err by: `preset`, `max_ms` or `max_error` of the query; `null`: the scene says. */
+  get budget() {
+    return this.#budget;
+  }
+
+  set budget(budget) {
+    if (same(budget, this.#budget)) return;
+    this.#budget = budget;
+    this.#requery();
+  }
+
+  /** Has the server settle the budget anew: what it knows of the scene has changed. */
+  settleAnew() {
+    if (this.#budget !== null) this.#requery();
+  }
+
+  /** Seconds at which time stands still for the view; `null`: it goes on. */
+  set frozenAt(t) {
+    if (t === this.#frozenAt) return;
+    this.#frozenAt = t;
+    this.#requery();
+  }
+
   /** The size of the view in its own pixels, those of pointers. */
   get viewSize() {
     return { width: this.#view.clientWidth, height: this.#view.clientHeight };
@@ -87,7 +114,8 @@ export class Live extends EventTarget {
   /** The query of what is on screen, and more. */
   query(more = {}) {
     const output = this.#output === "color" ? {} : { output: this.#output };
-    return new URLSearchParams({ ...this.size, ...output, ...more });
+    const time = this.#frozenAt === null ? {} : { t: this.#frozenAt };
+    return new URLSearchParams({ ...this.size, ...output, ...time, ...this.#budget, ...more });
   }
 
   /** The path of the open scene's resource `name` with the query of what is on screen. */
@@ -157,6 +185,7 @@ export class Live extends EventTarget {
   #listen(turn) {
     this.#events = new EventSource(this.path("events"));
     this.#events.addEventListener("frame", ({ data }) => this.#take(JSON.parse(data)));
+    this.#events.addEventListener("report", ({ data }) => this.#tell("report", JSON.parse(data)));
     this.#events.addEventListener("problem", ({ data }) => this.#refuse(Problem.from(JSON.parse(data))));
     this.#events.addEventListener("error", () => { if (turn === this.#turn) this.#recover(); });
   }

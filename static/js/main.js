@@ -1,8 +1,8 @@
 // The page: makes its parts and lets them know each other.
 
 import { openAddressed, openScene, showAddress } from "./address.js";
-import { byId } from "./dom.js";
-import { mountDrawer } from "./drawer.js";
+import { button, byId } from "./dom.js";
+import { Drawers } from "./drawers.js";
 import { takeDrops } from "./drop.js";
 import { History } from "./history.js";
 import { Instances } from "./instances.js";
@@ -21,6 +21,7 @@ import { Wheel } from "./input/wheel.js";
 import { mountHelp } from "./help.js";
 import { mountMarks } from "./marks.js";
 import { mountPanels } from "./panels/index.js";
+import { mountReport } from "./report.js";
 import { mountSelectionBar } from "./selection-bar.js";
 import { mountToolbar } from "./toolbar.js";
 
@@ -31,14 +32,18 @@ new Pointer(app, view);
 new Wheel(app, view);
 takeKeys(app, view, help);
 mountToolbar(app, byId("toolbar"));
-mountDrawer(byId("panels"), byId("toggle-panels"), byId("skip"));
+const drawers = new Drawers([byId("panels"), byId("report")], byId("toggle-panels"), byId("skip"));
 byId("open-help").addEventListener("click", help);
 mountSelectionBar(app, mountMarks(app, byId("marks")), byId("selected"));
-mountOverlay(app, byId("overlay"), mountPlanPicture(app, byId("plan")));
+mountOverlay(app, byId("overlay"), [
+  button("Picture of the plan", mountPlanPicture(app, byId("plan")), { id: "open-plan" }),
+  button("Error and time", openReport, { id: "open-report" }),
+]);
 takeDrops(app, byId("drop-hint"));
 tellOfScene();
 tellOfConnection();
 mountPanels(app);
+mountReport(app, byId("report"), () => drawers.showHome());
 window.addEventListener("hashchange", () => openAddressed(app));
 openAddressed(app);
 view.focus({ preventScroll: true });
@@ -57,6 +62,12 @@ function makeApp() {
   };
   app.motion = new Motion(app);
   return app;
+}
+
+/** The picture, which has less room then, is not to be covered. */
+function openReport() {
+  byId("overlay").open = false;
+  drawers.show(byId("report"));
 }
 
 /** Name and address of the open scene, and what becomes of it. */

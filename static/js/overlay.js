@@ -1,6 +1,6 @@
 // What the frame on screen is and cost, in a corner of the picture.
 
-import { button, element } from "./dom.js";
+import { element } from "./dom.js";
 
 /** Told no more often than this: numbers that flicker cannot be read. */
 const INTERVAL_MS = 250;
@@ -11,8 +11,8 @@ const ROOMY = "(min-width: 801px) and (min-height: 600px)";
 /** Colour of a pass in bars; names and numbers stand beside it. */
 export const passHue = (name) => `var(--pass-${name})`;
 
-/** Fills the overlay; `openPlan` shows the plan as a picture. */
-export function mountOverlay(app, overlay, openPlan) {
+/** Fills the overlay; `buttons` lead to more of the kind. */
+export function mountOverlay(app, overlay, buttons) {
   const { live, plan } = app;
   const summary = element("summary", {}, "Waiting for a frame…");
   const facts = element("dl", { className: "facts" });
@@ -20,7 +20,7 @@ export function mountOverlay(app, overlay, openPlan) {
   const legend = element("ul", { className: "legend" });
   const leftOut = element("details", { className: "left-out" });
   overlay.open = matchMedia(ROOMY).matches;
-  overlay.append(summary, facts, bar, legend, leftOut, button("Picture of the plan", openPlan, { id: "open-plan" }));
+  overlay.append(summary, facts, bar, legend, leftOut, element("div", { className: "more" }, ...buttons));
 
   let newest = null;
   let timer = null;

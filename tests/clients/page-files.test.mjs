@@ -1,13 +1,13 @@
 // Scenes and files: what is opened, dropped and saved.
 
 import assert from "node:assert/strict";
-import { mkdir, mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
+import { mkdir, mkdtemp, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
 import { decode, onPage, until } from "./harness.mjs";
 import { ROOM, Visit } from "./page.mjs";
-import { PATIENT, browser, server, visiting } from "./visiting.mjs";
+import { PATIENT, browser, saved, server, visiting } from "./visiting.mjs";
 
 test("scenes are created, opened from the gallery, renamed and deleted", PATIENT, () => onPage(browser, "scenes", async (page) => {
   await server.ask("PUT", "/scenes/old", ROOM);
@@ -117,23 +117,17 @@ visiting("an image that is dropped on a map becomes a texture there", async (vis
 
 visiting("the frame and the scene are saved", async (visit) => {
   const { page } = visit;
-  const save = async (button, name) => withFiles({}, async (folder) => {
-    const session = await browser.target().createCDPSession();
-    await session.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder, eventsEnabled: true });
-    const done = new Promise((resolve) => session.on("Browser.downloadProgress", ({ state }) => { if (state === "completed") resolve(); }));
+  const save = (button, name) => saved(name, async () => {
     await page.click("#open-save");
     await page.click(button);
-    await done;
-    await session.detach();
-    return readFile(path.join(folder, name));
   });
   await visit.stands();
-  const saved = await decode(page, await save("#save-png", `${visit.scene}.png`));
+  const png = await decode(page, await save("#save-png", `${visit.scene}.png`));
   const size = await page.$eval("#view img:not(.coming)", (img) => [img.naturalWidth, img.naturalHeight]);
-  assert.deepEqual([saved.width, saved.height], size);
-  const query = `width=${saved.width}&height=${saved.height}`;
+  assert.deepEqual([png.width, png.height], size);
+  const query = `width=${png.width}&height=${png.height}`;
   const drawn = await decode(page, await (await server.ask("GET", `${visit.path}/frame.png?${query}`)).arrayBuffer());
-  assert.ok(saved.data.equals(drawn.data), "the saved picture is the scene's");
+  assert.ok(png.data.equals(drawn.data), "the saved picture is the scene's");
   const json = JSON.parse(await save("#save-json", `${visit.scene}.json`));
   assert.deepEqual(json, await visit.document());
 });

@@ -37,6 +37,14 @@ export function field(scene, pointer, words, control) {
   return box;
 }
 
+/** A field of the page itself, which no value of the document stands behind. */
+export function plainField(words, control) {
+  const label = labelOf(words, control, `field-${(count += 1)}`);
+  for (const input of control.inputs) explain(input, words.hint);
+  control.adopt?.(label);
+  return element("div", { className: "field" }, label, control.element);
+}
+
 /** A label of one input; several inputs are a group, each with a name of its own. */
 function labelOf({ label, unit, hint }, { element: box, inputs }, id) {
   const isGroup = inputs.length !== 1;
@@ -54,6 +62,10 @@ function labelOf({ label, unit, hint }, { element: box, inputs }, id) {
 
 function describe(input, errorId, hint) {
   input.setAttribute("aria-describedby", errorId);
+  explain(input, hint);
+}
+
+function explain(input, hint) {
   if (hint) input.setAttribute("aria-description", hint);
 }
 

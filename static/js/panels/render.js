@@ -8,6 +8,7 @@ import { group, panel } from "./parts.js";
 import { choiceControl, choiceField } from "./fields/choice.js";
 import { numberField } from "./fields/number.js";
 import { rebuilt } from "./follow.js";
+import { budgetGroup } from "./budget.js";
 import { SHADINGS } from "./words.js";
 
 const SAMPLES = [1, 2, 4, 8, 16].map((samples) => [samples, String(samples)]);
@@ -16,9 +17,11 @@ const LENSES = [["perspective", "Perspective"], ["orthographic", "Orthographic"]
 /** Until the server has told where its automatic framing puts the camera. */
 const UNKNOWN_DISTANCE = 5;
 
-/** `render` and the camera's lens. */
-export function renderPanel({ scene, camera }) {
-  return panel("render", "Render", ...pictureFields(scene), group("Camera", ...cameraFields(scene, camera)));
+/** What the view may cost, `render`, and the camera's lens. */
+export function renderPanel(app) {
+  const { scene, camera } = app;
+  return panel("render", "Render", budgetGroup(app), group("Picture", ...pictureFields(scene)),
+    group("Camera", ...cameraFields(scene, camera)));
 }
 
 function pictureFields(scene) {
