@@ -10,7 +10,7 @@ use rasterd::pipeline::{self, Work};
 use rasterd::plan::{Elision, Elisions, FrameRequest, Plan};
 use rasterd::scene::{self, Document, Files, Scene, demo, gallery};
 use rasterd::settings::Simd;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::hint::black_box;
 use std::path::Path;
 use std::process::Command;
@@ -36,7 +36,8 @@ fn main() {
     }
 }
 
-/// What is measured: the demo, soft shadows, many triangles, and a scene that needs next to nothing.
+/// What is measured: the demo, soft shadows, many triangles, a scene that needs next to nothing, and one that
+/// does not know what it needs.
 fn cases() -> Vec<Case> {
     let of_gallery = |name: &'static str| {
         let new = gallery::find(name).expect("a piece of the gallery").to_scene();
@@ -55,10 +56,28 @@ fn cases() -> Vec<Case> {
         of_gallery("pcf-pcss"),
         of_gallery("triangles"),
         ("flat triangle", compiled(&flat, &Files::default())),
+        ("careless", compiled(&careless(), &Files::default())),
     ]
 }
 
-fn compiled(json: &serde_json::Value, files: &Files) -> Arc<Scene> {
+/// A scene that asks for much that it does not need: lights that are out, a lamp behind which nothing stands,
+/// balls behind the camera and beside the view, a map of one colour, effects of no strength.
+fn careless() -> Value {
+    let lamp = |z: f64, intensity: f64| json!({ "type": "point", "position": [0.5, 2, z], "intensity": intensity, "shadow": { "resolution": 512 } });
+    let ball = |x: f64, z: f64| json!({ "mesh": "ball", "material": "painted", "translation": [x, 0.5, z] });
+    json!({
+        "camera": { "position": [2.5, 1.8, 3.5], "target": [0, 0.4, 0], "fov_y_deg": 35 },
+        "lights": { "lamp": lamp(1.5, 3.0), "out": lamp(-1.5, 0.0), "off": lamp(0.0, 0.0) },
+        "textures": { "paint": { "checker": { "colors": ["#b07030", "#b07030"], "cells": 1 }, "filter": "nearest" } },
+        "materials": { "painted": { "diffuse_map": "paint" } },
+        "meshes": { "ball": { "type": "sphere" }, "floor": { "type": "plane", "size": [8, 8] } },
+        "instances": { "a": ball(0.0, 0.0), "b": ball(0.3, 20.0), "c": ball(30.0, 0.0), "d": ball(1.7, 1.2),
+            "floor": { "mesh": "floor", "material": "painted" } },
+        "post": [{ "type": "blur", "radius": 0 }, { "type": "grayscale", "amount": 0 }],
+    })
+}
+
+fn compiled(json: &Value, files: &Files) -> Arc<Scene> {
     let document = Document::from_json(json).expect("the document is sound");
     Arc::new(scene::compile(&document, files, None, &Limits::default()).expect("the scene compiles").scene)
 }

@@ -195,23 +195,43 @@ fn add_lights(
     let reflectance = Reflectance { ambient: surface.ambient, diffuse, specular };
     light::add_ambient(level, lighting.ambient, &reflectance, count, out);
     for source in &lighting.lights {
-        match source.shadow {
-            Some(map) if surface.receives_shadow => {
-                let asked = asking(level, source, varyings, lighting, count);
-                if asked == 0 {
-                    tally.spare(Elision::TurnedAway, count as u64);
-                    continue;
-                }
-                let taps = lighting.maps[map].visibility(level, &varyings.shadow[map], asked, visibility);
-                tally.count(Unit::Lookups, u64::from(asked.count_ones()));
-                tally.count(Unit::Taps, taps.done);
-                tally.spare(Elision::DecidedTaps, taps.spared);
+        let is_faced = match source.shadow.filter(|_| surface.receives_shadow) {
+            None => {
+                *visibility = [1.0; BLOCK];
+                true
             }
-            _ => *visibility = [1.0; BLOCK],
-        }
-        let lit = light::add_light(level, source, visibility, varyings, lighting, &reflectance, count, out);
-        count_light(surface, lit as u64, count as u64, tally);
+            Some(map) => {
+                ask_map(level, source, map, varyings, lighting, count, (&mut *visibility, &mut *tally))
+            }
+        };
+        let looked_at = if is_faced {
+            light::add_light(level, source, visibility, varyings, lighting, &reflectance, count, out)
+        } else {
+            0
+        };
+        count_light(surface, looked_at as u64, count as u64, tally);
     }
+}
+
+/// Asks a shadow map for the visibility of its light; false if no fragment asks.
+fn ask_map(
+    level: Level,
+    source: &LightSource,
+    map: usize,
+    varyings: &Varyings,
+    lighting: &Lighting,
+    count: usize,
+    (visibility, tally): (&mut [f32; BLOCK], &mut Tally),
+) -> bool {
+    let asked = asking(level, source, varyings, lighting, count);
+    if asked == 0 {
+        return false;
+    }
+    let taps = lighting.maps[map].visibility(level, &varyings.shadow[map], asked, visibility);
+    tally.count(Unit::Lookups, u64::from(asked.count_ones()));
+    tally.count(Unit::Taps, taps.done);
+    tally.spare(Elision::DecidedTaps, taps.spared);
+    true
 }
 
 /// One bit for each fragment of a block that asks whether it is in a light's shadow.

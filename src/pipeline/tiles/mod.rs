@@ -365,13 +365,21 @@ pub fn shade<P>(
     tile: Tile<P>,
     write: impl Fn(&Resolved, Tile<P>),
 ) -> TileTimes {
-    let plain = shared
-        .background
-        .plain()
-        .filter(|_| scratch.list.is_empty() && shared.lighting.elide.contains(Elision::PlainTiles));
-    if let Some(color) = plain {
-        return fill(shared, scratch, color, tile, write);
+    let may_fill = scratch.list.is_empty() && shared.lighting.elide.contains(Elision::PlainTiles);
+    match shared.background.plain().filter(|_| may_fill) {
+        Some(color) => fill(shared, scratch, color, tile, write),
+        None => shade_pixels(work, shared, scratch, tile, write),
     }
+}
+
+/// Shades a tile pixel by pixel.
+fn shade_pixels<P>(
+    work: &Work,
+    shared: &Shared,
+    scratch: &mut Scratch,
+    tile: Tile<P>,
+    write: impl Fn(&Resolved, Tile<P>),
+) -> TileTimes {
     let mut clock = Clock::start();
     let mut times = TileTimes::default();
     let level = work.level;
@@ -392,15 +400,9 @@ pub fn shade<P>(
         times.shade = clock.lap();
     }
 
-    scratch.sky.iter_mut().for_each(|channel| channel.resize(side * side, 0.0));
-    let everywhere = (!shared.lighting.elide.contains(Elision::CoveredSky)).then(|| region.pixels(side));
-    let pixels = everywhere.as_ref().unwrap_or(&scratch.fragments.sky);
-    if !pixels.is_empty() {
-        shared.background.draw(level, pixels, &region, side, &mut scratch.sky);
-        times.tally.count(Unit::SkyPixels, pixels.len() as u64);
+    if draw_sky(level, shared, scratch, &region, side, &mut times.tally) {
         times.sky = clock.lap();
     }
-    times.tally.spare(Elision::CoveredSky, (region.area() - pixels.len()) as u64);
 
     resolve::resolve(&scratch.fragments, &scratch.sky, shared.samples, side, &mut scratch.colors);
     let transparent = shared.background.is_transparent();
@@ -419,6 +421,27 @@ pub fn shade<P>(
     times.tally.add(&scratch.take_shade_tally(&region));
     times.resolve += clock.lap();
     times
+}
+
+/// Draws the background where it is seen; false if that is nowhere.
+fn draw_sky(
+    level: Level,
+    shared: &Shared,
+    scratch: &mut Scratch,
+    region: &Region,
+    side: usize,
+    tally: &mut Tally,
+) -> bool {
+    scratch.sky.iter_mut().for_each(|channel| channel.resize(side * side, 0.0));
+    let everywhere = (!shared.lighting.elide.contains(Elision::CoveredSky)).then(|| region.pixels(side));
+    let pixels = everywhere.as_ref().unwrap_or(&scratch.fragments.sky);
+    tally.count(Unit::SkyPixels, pixels.len() as u64);
+    tally.spare(Elision::CoveredSky, (region.area() - pixels.len()) as u64);
+    if pixels.is_empty() {
+        return false;
+    }
+    shared.background.draw(level, pixels, region, side, &mut scratch.sky);
+    true
 }
 
 /// Fills a tile in which nothing is drawn over a background of one colour.
