@@ -269,6 +269,6 @@ fn a_thousand_random_scenes_are_the_same_whatever_is_left_out() {
     }
     for (elision, scenes) in Elision::ALL.into_iter().zip(spared) {
         println!("{} spares work in {scenes} of {SCENES} scenes", elision.name());
-        assert!(scenes > 20, "{} in {scenes} scenes", elision.name());
+        assert!(scenes > 10, "{} in {scenes} scenes", elision.name());
     }
 }
