@@ -164,3 +164,19 @@ fn a_server_is_healthy_until_it_is_told_to_stop() {
     assert_eq!(server.wait().expect("an end").code(), Some(0));
     assert_eq!(check(), Some(1));
 }
+
+#[test]
+fn a_selftest_prints_each_case_beside_its_bound() {
+    let selftest = |arguments: &[&str]| {
+        let output = rasterd().arg("selftest").args(arguments).output().expect("a run");
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned(), error(&output))
+    };
+    let (code, table, said) = selftest(&["b5", "B31", "--threads", "1"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(table.starts_with("case  metric") && table.contains("\nB31 ") && table.contains("not offered"));
+    let (code, rows, _) = selftest(&["B5", "--json"]);
+    let rows: serde_json::Value = serde_json::from_str(&rows).expect("JSON");
+    assert_eq!((code, &rows[0]["case"], &rows[0]["outcome"]), (Some(0), &"B5".into(), &"holds".into()));
+    let (code, _, said) = selftest(&["B51"]);
+    assert_eq!((code, said.contains("B51")), (Some(1), true), "{said}");
+}
