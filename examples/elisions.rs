@@ -6,7 +6,7 @@
 
 use rasterd::limits::Limits;
 use rasterd::math::simd::Level;
-use rasterd::pipeline::{self, Work};
+use rasterd::pipeline::{self, Order, Work};
 use rasterd::plan::{Elision, Elisions, FrameRequest, Plan};
 use rasterd::scene::{self, Document, Files, Scene, demo, gallery};
 use rasterd::settings::Simd;
@@ -104,7 +104,7 @@ fn print_tables() {
     let names: Vec<&str> = cases.iter().map(|(name, _)| *name).collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     let cancel = AtomicBool::new(false);
-    let work = Work { pool: &pool, cancel: &cancel, level: Level::new() };
+    let work = Work { pool: &pool, cancel: &cancel, level: Level::new(), order: Order::Rows };
     println!("Time of a frame, more without than with, 1 thread, {} × {}:\n", TIMED[0], TIMED[1]);
     let times: Vec<Vec<f64>> = cases.iter().map(|(_, scene)| times(scene, &work)).collect();
     print_table(&names, &times);
@@ -175,7 +175,7 @@ fn draw_each_once(name: &str) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     let cancel = AtomicBool::new(false);
     let level = "avx2".parse::<Simd>().map_or(Level::new(), Simd::level);
-    let work = Work { pool: &pool, cancel: &cancel, level };
+    let work = Work { pool: &pool, cancel: &cancel, level, order: Order::Rows };
     let (_, scene) = cases().into_iter().find(|(known, _)| *known == name).expect("the name of a scene");
     for elide in [Elisions::ALL].into_iter().chain(choices()) {
         measured_frame(&scene, &request(COUNTED, elide), &work);

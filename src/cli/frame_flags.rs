@@ -15,31 +15,31 @@ pub(super) struct FrameFlags {
     #[arg(long, allow_hyphen_values = true)]
     samples: Option<String>,
     /// Texels along a side of every shadow map
-    #[arg(long, allow_hyphen_values = true, value_name = "TEXELS")]
+    #[arg(long, alias = "shadow_resolution", allow_hyphen_values = true, value_name = "TEXELS")]
     shadow_resolution: Option<String>,
     /// Samples of every PCF
-    #[arg(long, allow_hyphen_values = true, value_name = "TAPS")]
+    #[arg(long, alias = "pcf_taps", allow_hyphen_values = true, value_name = "TAPS")]
     pcf_taps: Option<String>,
     /// Samples with which PCSS looks for blockers
-    #[arg(long, allow_hyphen_values = true, value_name = "TAPS")]
+    #[arg(long, alias = "search_taps", allow_hyphen_values = true, value_name = "TAPS")]
     search_taps: Option<String>,
     /// Samples with which PCSS filters
-    #[arg(long, allow_hyphen_values = true, value_name = "TAPS")]
+    #[arg(long, alias = "filter_taps", allow_hyphen_values = true, value_name = "TAPS")]
     filter_taps: Option<String>,
     /// nearest, bilinear or trilinear, in place of every texture's but those that are nearest themselves
-    #[arg(long, allow_hyphen_values = true, value_name = "FILTER")]
+    #[arg(long, alias = "texture_filter", allow_hyphen_values = true, value_name = "FILTER")]
     texture_filter: Option<String>,
     /// The picture is drawn with so many times the pixels along each side, and resampled
-    #[arg(long, allow_hyphen_values = true, value_name = "TIMES")]
+    #[arg(long, alias = "render_scale", allow_hyphen_values = true, value_name = "TIMES")]
     render_scale: Option<String>,
     /// draft, normal, high or reference, in place of the settings above that are not given
     #[arg(long, allow_hyphen_values = true)]
     preset: Option<String>,
     /// Settings with the least error that take at most so many milliseconds
-    #[arg(long, allow_hyphen_values = true, value_name = "MS")]
+    #[arg(long, alias = "max_ms", allow_hyphen_values = true, value_name = "MS")]
     max_ms: Option<String>,
     /// The fastest settings with at most this root mean square error
-    #[arg(long, allow_hyphen_values = true, value_name = "ERROR")]
+    #[arg(long, alias = "max_error", allow_hyphen_values = true, value_name = "ERROR")]
     max_error: Option<String>,
     /// Seconds
     #[arg(long, allow_hyphen_values = true)]

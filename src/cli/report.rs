@@ -9,7 +9,7 @@ use rasterd::plan::request::Query;
 use rasterd::report::{Knob, Options, Progress, Report as Measured, Stage, html, plot};
 use rasterd::settings::Machine;
 use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// The arguments of `rasterd report`.
@@ -30,6 +30,10 @@ pub(super) struct Report {
     /// texture_filter [default: all that the scene has]
     #[arg(long, value_name = "KNOBS", value_parser = knobs)]
     knobs: Option<Knobs>,
+
+    /// Run the catalogue of stiff cases too, as selftest does, and put its table into the report
+    #[arg(long)]
+    selftest: bool,
 
     #[command(flatten)]
     frame: FrameFlags,
@@ -53,7 +57,7 @@ fn budget(text: &str) -> Result<Duration, String> {
 impl Report {
     /// Files → scene → report → files.
     pub(super) fn run(self) -> Result<(), Failure> {
-        let writers: Vec<Writer> = self.out.iter().map(writer).collect::<Result<_, _>>()?;
+        let writers: Vec<Writer> = self.out.iter().map(|path| writer(path)).collect::<Result<_, _>>()?;
         let request = self.request()?;
         let (renderer, scene) = self.source.open(self.machine.clone())?;
         let options = Options {
@@ -61,6 +65,7 @@ impl Report {
             budget: self.budget_s,
             knobs: self.knobs.clone().map_or_else(Vec::new, |knobs| knobs.0),
             width: request.width.unwrap_or(Options::default().width),
+            selftest: self.selftest,
             ..Options::default()
         };
         let report = renderer.report_now(&scene, &request, &options, &show)?;
@@ -84,7 +89,7 @@ impl Report {
 type Writer = fn(&Measured) -> String;
 
 /// That for the ending of `path`.
-fn writer(path: &PathBuf) -> Result<Writer, Failure> {
+fn writer(path: &Path) -> Result<Writer, Failure> {
     match path.extension().and_then(|ending| ending.to_str()) {
         Some("svg") => Ok(plot::svg),
         Some("html") => Ok(html::page),

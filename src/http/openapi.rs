@@ -104,6 +104,9 @@ pub(super) struct ReportQuery {
     /// What is turned, with commas between: `samples`, `shadow_resolution`, `pcf_taps`, `pcss_taps`, `render_scale`,
     /// `texture_filter`; without it, all that the scene has
     knobs: Option<String>,
+    /// Whether the catalogue of stiff cases is run too, for about a minute on top of `budget_s`; its table is in
+    /// the report
+    selftest: Option<bool>,
 }
 
 /// How the pictures of a stream lie one behind the other.

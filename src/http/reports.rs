@@ -55,7 +55,7 @@ pub(super) async fn read(
     Ok((headers, (format.write)(&report)).into_response())
 }
 
-/// `budget_s` and `knobs`, out of a query that may hold other parameters too.
+/// `budget_s`, `knobs` and `selftest`, out of a query that may hold other parameters too.
 fn read_options(query: &mut Query, id: &str, request: &FrameRequest) -> Options {
     let default = Options::default();
     Options {
@@ -63,6 +63,7 @@ fn read_options(query: &mut Query, id: &str, request: &FrameRequest) -> Options 
         budget: query.parsed("budget_s", Options::budget).unwrap_or(default.budget),
         knobs: query.parsed("knobs", Knob::list).unwrap_or_default(),
         width: request.width.unwrap_or(default.width),
+        selftest: query.flag("selftest").unwrap_or(false),
         ..default
     }
 }

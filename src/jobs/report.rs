@@ -70,7 +70,9 @@ impl Engine {
     ) -> Result<Report, JobError> {
         let subject = Subject { scene: Arc::clone(scene), request: request.clone(), limits: self.limits };
         let report = make(&subject, options, tell, &self.work(cancel))?;
-        self.fronts.keep(scene, Front::of(&report));
+        if let Some(front) = Front::of(&report) {
+            self.fronts.keep(scene, front);
+        }
         Ok(report)
     }
 }

@@ -60,9 +60,12 @@ struct Measured {
 const OF_THE_SCENE: [&str; 3] = ["plan", "shadow", "geometry"];
 
 impl Front {
-    /// That of a report.
+    /// That of a report; `None` where its time was too short for all presets: a front of less is none to choose by.
     #[must_use]
-    pub fn of(report: &Report) -> Self {
+    pub fn of(report: &Report) -> Option<Self> {
+        if report.unfinished.iter().any(|family| matches!(family, Family::Preset(_))) {
+            return None;
+        }
         let measured = |point: &Point| Measured {
             setting: point.knobs,
             error: point.err.clamped.rmse,
@@ -75,11 +78,11 @@ impl Front {
             });
             presets.map(|preset| (preset, point.err.clamped.rmse)).collect::<Vec<_>>()
         };
-        Self {
+        Some(Self {
             points: report.points.iter().filter(|point| point.pareto).map(measured).collect(),
             presets: report.points.iter().flat_map(preset).collect(),
             pixels: f64::from(report.meta.width) * f64::from(report.meta.height),
-        }
+        })
     }
 
     /// What its settings promise for the picture of `plan`.

@@ -12,7 +12,7 @@ svg { max-width: 100%; height: auto }\n\
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px }\n\
 th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #e6e6e6; white-space: nowrap }\n\
 th { font-weight: 600 } th:first-child, td:first-child { text-align: left }\n\
-tr.front td { background: #eef6ee }\n\
+tr.front td { background: #eef6ee } tr.out td { background: #fbe9e7 }\n\
 </style>\n";
 
 /// The whole page.
@@ -25,6 +25,7 @@ pub fn page(report: &Report) -> String {
     reached(&mut page, report);
     settings(&mut page, report);
     parts(&mut page, report);
+    stability(&mut page, report);
     notes(&mut page, report);
     page.push_str("</html>\n");
     page
@@ -122,6 +123,24 @@ fn parts(page: &mut String, report: &Report) {
     );
 }
 
+fn stability(page: &mut String, report: &Report) {
+    if report.stability.is_empty() {
+        return;
+    }
+    let number = |value: f64| if value.is_finite() { format!("{value:.3e}") } else { "–".to_owned() };
+    let rows = report.stability.iter().map(|row| {
+        let margin = if row.margin.is_nan() { "–".to_owned() } else { format!("{:.2}", row.margin) };
+        let cells = [row.case.to_owned(), row.metric.clone(), number(row.value), number(row.bound), margin];
+        (if row.is_out() { "out" } else { "" }, cells.to_vec())
+    });
+    table(
+        page,
+        "Stiff and extreme cases, the worst margin first",
+        &["case", "metric", "value", "bound", "margin"],
+        rows,
+    );
+}
+
 fn notes(page: &mut String, report: &Report) {
     let truth = &report.reference;
     let ratio = &report.aa_ratio;
@@ -140,6 +159,7 @@ fn notes(page: &mut String, report: &Report) {
         ),
         format!("The very first frame took {:.1} ms.", report.meta.cold_ms),
         format!("FLIP: {}.", report.meta.flip),
+        same_bytes(report),
     ];
     lines.extend(report.threads.iter().map(|t| format!("{} threads: {:.2} ms.", t.threads, t.ms)));
     lines.extend(
@@ -153,4 +173,17 @@ fn notes(page: &mut String, report: &Report) {
     page.push_str("<h2>Notes</h2>\n<ul>\n");
     lines.iter().for_each(|line| page.push_str(&format!("<li>{}</li>\n", escaped(line))));
     page.push_str("</ul>\n");
+}
+
+fn same_bytes(report: &Report) -> String {
+    let same = &report.determinism;
+    let ways = same.matrix.len();
+    if same.differing.is_empty() {
+        format!(
+            "Drawn in {ways} ways (threads, SIMD levels, orders of the tiles), the default gave the same bytes: {}.",
+            same.hash
+        )
+    } else {
+        format!("Of {ways} ways to draw the default, these gave other bytes: {}.", same.differing.join("; "))
+    }
 }

@@ -1,10 +1,13 @@
 //! How a report comes about, within its budget.
 
 use super::component;
+use super::determinism::{self, Determinism};
 use super::error::PictureError;
 use super::front::{self, Between, Place};
 use super::machine::Machine;
 use super::reference::{Aim, Effort, Reference};
+use super::selftest::instruments::engine::Engine;
+use super::selftest::{self, Case, Measurement};
 use super::setting::{Knob, Setting};
 use super::statistics::median;
 use super::subject::{self, Subject};
@@ -13,7 +16,7 @@ use super::timing::{self, Sample, Timing};
 use super::{AtTime, Failed, Meta, Parts, Point, Report, Threads, Truth};
 use crate::pipeline::{Cancelled, Pixels, Work};
 use crate::plan::request::Preset;
-use crate::plan::{FrameRequest, Output, Plan};
+use crate::plan::{Elisions, FrameRequest, Output, Plan};
 use crate::settings::Simd;
 use serde::Serialize;
 use std::ops::RangeInclusive;
@@ -32,6 +35,8 @@ pub struct Options {
     pub width: u32,
     /// Times that each setting is drawn, if the budget allows.
     pub rounds: usize,
+    /// Whether the catalogue of stiff cases is run too, on top of the budget.
+    pub selftest: bool,
 }
 
 impl Default for Options {
@@ -42,6 +47,7 @@ impl Default for Options {
             knobs: Vec::new(),
             width: 320,
             rounds: 15,
+            selftest: false,
         }
     }
 }
@@ -93,6 +99,9 @@ const ERRORS_END: f64 = 0.5;
 const PARTS_END: f64 = 0.55;
 const COMPONENTS_END: f64 = 0.7;
 
+/// The part of the budget that comparing bytes may take on top of it.
+const DETERMINISM: f64 = 0.1;
+
 /// Every setting is timed at least so often, or not at all.
 const LEAST_ROUNDS: u32 = 5;
 
@@ -116,6 +125,8 @@ pub fn make(subject: &Subject, options: &Options, tell: Tell, work: &Work) -> Re
     making.tell(Stage::Components, 1.0);
     let samples = making.time(&candidates[..errors.len()])?;
     let threads = making.threads()?;
+    let determinism = making.determinism()?;
+    let stability = making.stability()?;
 
     let measured = candidates.iter().zip(errors).zip(&samples);
     let mut points: Vec<Point> =
@@ -132,6 +143,8 @@ pub fn make(subject: &Subject, options: &Options, tell: Tell, work: &Work) -> Re
         front,
         parts,
         threads,
+        determinism,
+        stability,
         aa_ratio: timing::ratio(&samples[1], &samples[0]),
         points,
     })
@@ -264,6 +277,27 @@ impl<'a> Making<'a> {
             }
         }
         Ok(settings.len())
+    }
+
+    /// Whether the default gives the same bytes however it is drawn, as far as a little more than the budget tells.
+    fn determinism(&self) -> Result<Determinism, Failed> {
+        let until = Instant::now().max(self.end_of(1.0)) + self.options.budget.mul_f64(DETERMINISM);
+        determinism::compare(&self.subject, &Setting::of(&self.plan), until, self.work)
+    }
+
+    /// The catalogue of stiff cases, if it was asked for.
+    fn stability(&self) -> Result<Vec<Measurement>, Failed> {
+        if !self.options.selftest {
+            return Ok(Vec::new());
+        }
+        let engine = Engine {
+            threads: self.work.pool.current_num_threads(),
+            level: self.work.level,
+            order: self.work.order,
+            elide: Elisions::ALL,
+        };
+        let cases: Vec<&Case> = selftest::CASES.iter().collect();
+        Ok(selftest::run(&cases, selftest::Effort::Quick, &engine, self.work.cancel, &|_| {})?)
     }
 
     /// Milliseconds of the default with 1, 2, 4, … threads, up to those that draw.

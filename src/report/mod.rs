@@ -10,6 +10,7 @@
 pub mod choose;
 mod component;
 mod cost;
+pub mod determinism;
 pub mod error;
 pub mod fit;
 pub mod front;
@@ -35,9 +36,11 @@ pub use timing::Timing;
 
 use crate::pipeline::Cancelled;
 use crate::plan::PlanError;
+use determinism::Determinism;
 use error::PictureError;
 use front::Between;
 use machine::Machine;
+use selftest::Measurement;
 use serde::Serialize;
 
 /// Why there is no report.
@@ -76,6 +79,10 @@ pub struct Report {
     pub parts: Option<Parts>,
     /// Milliseconds of the default with fewer threads.
     pub threads: Vec<Threads>,
+    /// Whether the default gives the same bytes however it is drawn.
+    pub determinism: Determinism,
+    /// The catalogue of stiff cases, worst margin first; empty where it was not asked for.
+    pub stability: Vec<Measurement>,
     /// Of the default to itself, measured as two settings: its interval holds 1, and half its width is the least
     /// difference that can be claimed.
     pub aa_ratio: statistics::Spread,

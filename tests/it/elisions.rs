@@ -259,7 +259,7 @@ fn a_thousand_random_scenes_are_the_same_whatever_is_left_out() {
         let some = Elision::ALL.into_iter().filter(|_| rng.below(2) == 0);
         let some = some.fold(Elisions::NONE, Elisions::with);
         let random = random_scene(seed);
-        let work = work_of(&pools[rng.below(pools.len())], levels[rng.below(levels.len())]);
+        let work = work_of(pools[rng.below(pools.len())], levels[rng.below(levels.len())]);
         let differences = differences(&random, some, &work);
         assert!(differences.is_empty(), "seed {seed:#x}: {differences:?}\n{}", random.document);
         let tally = draw(&random.scene, &random.request, Elisions::ALL, &work).stats.tally;

@@ -72,6 +72,9 @@ async fn a_report_measures_what_the_scene_has() {
     assert_eq!(errors.len(), 2);
     assert!((errors[0] - errors[1]).abs() > 0.05, "one sample and sixteen: {errors:?}");
 
+    assert!(report["determinism"]["matrix"].as_array().is_some_and(|ways| !ways.is_empty()));
+    assert_eq!((&report["determinism"]["differing"], &report["stability"]), (&json!([]), &json!([])));
+
     let reasons: Vec<&str> = report["left_out"]
         .as_array()
         .expect("a list")

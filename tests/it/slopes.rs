@@ -205,7 +205,9 @@ fn texture_errors(filter: &str, off: f64) -> Vec<[f64; 2]> {
     let of = |n: u32| {
         let code = |x: u32, y: u32| {
             let [u, v] = [x, n - 1 - y].map(|i| (f64::from(i) + 0.5) / f64::from(n));
-            (255.0 * smooth(u, v) + 0.5).floor() as u8
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "codes are in 0–255")]
+            let code = (255.0 * smooth(u, v) + 0.5).floor() as u8;
+            code
         };
         let files = file("smooth.png", png(n, n, |x, y| [code(x, y), code(x, y), code(x, y), 255]));
         let document = json!({

@@ -75,7 +75,7 @@ pub fn faults(document: &Value) -> Vec<String> {
 /// If the request makes no sense for the scene.
 #[must_use]
 pub fn plan(scene: &Arc<Scene>, request: &FrameRequest) -> Plan {
-    let elide = request.elide.clone().unwrap_or(Engine::current().elide);
+    let elide = request.elide.unwrap_or(Engine::current().elide);
     let request = FrameRequest { elide: Some(elide), ..request.clone() };
     Plan::new(scene, &request, &Limits::default()).unwrap_or_else(|error| panic!("{error:?}"))
 }
