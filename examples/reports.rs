@@ -1,4 +1,4 @@
-//! Measures error against run time of three scenes and writes the figures that `docs/error-and-time.md` shows:
+//! Measures error against run time of three scenes and writes their figures to `docs/reports`:
 //! `cargo run --release --example reports`
 
 use rasterd::jobs::Renderer;
