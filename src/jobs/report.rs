@@ -7,7 +7,7 @@ use crate::report::choose::{Choice, Front, choose};
 use crate::report::{Failed, Options, Progress, Report, Stage, Subject, make};
 use crate::scene::Scene;
 use std::collections::VecDeque;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Weak};
 use tokio::sync::{Semaphore, watch};
 
@@ -151,7 +151,7 @@ struct Asked {
 #[derive(Debug)]
 struct Job {
     done: watch::Receiver<Option<Result<Arc<Report>, JobError>>>,
-    _cancel: CancelOnDrop,
+    cancel: CancelOnDrop,
 }
 
 impl Reports {
@@ -195,9 +195,12 @@ impl Reports {
         self.0.news.subscribe()
     }
 
-    /// Takes no more reports; that under way is finished or left by those who wait for it.
+    /// Takes no more reports, and stops the one under way: it may have minutes to go.
     pub fn close(&self) {
         self.0.turn.close();
+        for job in lock(&self.0.open).iter().filter_map(|(_, job)| job.upgrade()) {
+            job.cancel.flag().store(true, Ordering::Relaxed);
+        }
     }
 
     fn finished(&self, asked: &Asked) -> Option<Arc<Report>> {
@@ -215,7 +218,7 @@ impl Reports {
         let (finish, done) = watch::channel(None);
         let cancel = CancelOnDrop::default();
         let flag = cancel.flag();
-        let job = Arc::new(Job { done, _cancel: cancel });
+        let job = Arc::new(Job { done, cancel });
         open.push((asked.clone(), Arc::downgrade(&job)));
         let desk = Arc::clone(&self.0);
         tokio::spawn(async move {
@@ -243,6 +246,9 @@ impl Desk {
             caught(|| engine.report(&scene, &asked_for.request, &asked_for.options, &tell, &cancel))
         });
         let result = job.await.map_err(|_| JobError::Panicked)?;
+        if self.turn.is_closed() {
+            return Err(JobError::Closing);
+        }
         self.tell(&asked.options.name, Progress { stage: Stage::Timing, done: 1.0 });
         let report = Arc::new(result?);
         let mut finished = lock(&self.finished);

@@ -166,6 +166,22 @@ async fn a_report_holds_no_frame_up() {
     assert_eq!(asked.await.expect("no panic").status, 200);
 }
 
+#[tokio::test(flavor = "multi_thread")]
+async fn a_server_that_goes_down_stops_its_report() {
+    let client = client().await;
+    let mut news = client.app.reports.news();
+    let asked = tokio::spawn({
+        let client = client.clone();
+        async move { report(&client, "json", "budget_s=600&width=200").await }
+    });
+    news.wait_for(Option::is_some).await.expect("it has begun");
+    client.app.close();
+    let reply =
+        tokio::time::timeout(crate::client::PATIENCE, asked).await.expect("long before its budget ends");
+    reply.expect("no panic").problem(503);
+    report(&client, "json", QUERY).await.problem(503);
+}
+
 #[tokio::test]
 async fn what_no_report_can_be_is_refused() {
     let client = client().await;
