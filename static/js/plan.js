@@ -43,6 +43,7 @@ export class Plan extends EventTarget {
   /** What fails here fails for the stream as well, which tells about it. */
   async #readOnce() {
     const { id } = this.#scene;
+    if (id === null) return; // The view has its size before a scene is open.
     const response = await ask(this.#live.path("plan")).catch(() => null);
     const plan = await response?.json();
     if (!plan || id !== this.#scene.id) return;
