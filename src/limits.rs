@@ -76,6 +76,8 @@ pub struct Limits {
     pub picture_side: u32,
     /// Pixels of a picture: one is held as 4 bytes, or 16 on its way. Fixed.
     pub picture_pixels: u64,
+    /// Pixels of a report: of each, references in 64-bit floats keep some 500 bytes. Fixed.
+    pub report_pixels: u64,
     /// Bytes of working memory for one frame, those of the frames before it in the same file among them
     /// (`RASTERD_MAX_FRAME_BYTES`): 65 k instances of a million triangles are a tiny document.
     pub frame_bytes: u64,
@@ -129,6 +131,7 @@ impl Default for Limits {
             body_bytes: 256 << 20,
             picture_side: 16_384,
             picture_pixels: 1 << 26,
+            report_pixels: 1 << 20,
             frame_bytes: 4 << 30,
             scene_bytes: 2 << 30,
             total_bytes: 4 << 30,

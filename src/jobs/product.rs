@@ -91,7 +91,7 @@ impl Product {
         request: &FrameRequest,
         limits: &Limits,
     ) -> Result<Vec<FrameRequest>, JobError> {
-        check_bytes(self.held_bytes(scene, request), limits)?;
+        PlanError::over_memory("memory of all frames", self.held_bytes(scene, request), limits)?;
         match self {
             Self::Still(format) => Ok(vec![showing(request, format.drawn_as(request.output)?)]),
             Self::Turntable { frames, format } => {
@@ -140,7 +140,8 @@ impl Product {
         let rests = plans.iter().map(|plan| plan.bytes() - plan.geometry_bytes());
         let rest = rests.fold(0u64, u64::saturating_add);
         let held = self.held_bytes(scene, request);
-        check_bytes(held.saturating_add(geometry).saturating_add(rest), limits)
+        let bytes = held.saturating_add(geometry).saturating_add(rest);
+        PlanError::over_memory("memory of all frames", bytes, limits)
     }
 
     /// What tells its file from others of the same frames.
@@ -151,15 +152,6 @@ impl Product {
             Self::Archive { .. } => "zip".to_owned(),
         }
     }
-}
-
-fn check_bytes(value: u64, limits: &Limits) -> Result<(), PlanError> {
-    let limit = limits.frame_bytes;
-    if value <= limit {
-        return Ok(());
-    }
-    let what = "memory of all frames in bytes".to_owned();
-    Err(PlanError::TooLarge { what, limit, value, setting: Some("RASTERD_MAX_FRAME_BYTES") })
 }
 
 /// A file has one range of depth, or its values could not be compared.

@@ -120,6 +120,28 @@ pub enum PlanError {
     },
 }
 
+impl PlanError {
+    /// Refuses a `value` over its `limit`, which `setting` moves.
+    ///
+    /// # Errors
+    /// [`PlanError::TooLarge`].
+    pub fn over(what: &str, value: u64, limit: u64, setting: Option<&'static str>) -> Result<(), Self> {
+        if value <= limit {
+            return Ok(());
+        }
+        Err(Self::TooLarge { what: what.to_owned(), limit, value, setting })
+    }
+
+    /// Refuses more `bytes` of memory than a frame may have.
+    ///
+    /// # Errors
+    /// [`PlanError::TooLarge`].
+    pub fn over_memory(what: &str, bytes: u64, limits: &Limits) -> Result<(), Self> {
+        let what = format!("{what} in bytes");
+        Self::over(&what, bytes, limits.frame_bytes, Some("RASTERD_MAX_FRAME_BYTES"))
+    }
+}
+
 impl Plan {
     /// Settles what a frame of `scene` needs.
     ///
@@ -406,15 +428,7 @@ impl Plan {
     /// for any number of triangles.
     fn charge(&mut self, bytes: u64, limits: &Limits) -> Result<(), PlanError> {
         self.bytes = self.bytes.saturating_add(bytes);
-        if self.bytes <= limits.frame_bytes {
-            return Ok(());
-        }
-        Err(PlanError::TooLarge {
-            what: "working memory of the frame in bytes".to_owned(),
-            limit: limits.frame_bytes,
-            value: self.bytes,
-            setting: Some("RASTERD_MAX_FRAME_BYTES"),
-        })
+        PlanError::over_memory("working memory of the frame", self.bytes, limits)
     }
 
     /// Bytes of working memory that it will take.
@@ -496,27 +510,15 @@ fn number(index: usize) -> u32 {
 }
 
 fn check_picture(width: u32, height: u32, limits: &Limits) -> Result<(), PlanError> {
-    let too_large = |what: &str, limit: u64, value: u64| {
-        Err(PlanError::TooLarge { what: what.to_owned(), limit, value, setting: None })
-    };
-    let side = width.max(height);
-    if side > limits.picture_side {
-        return too_large("the picture's longer side in pixels", limits.picture_side.into(), side.into());
-    }
+    let side = u64::from(width.max(height));
+    PlanError::over("the picture's longer side in pixels", side, limits.picture_side.into(), None)?;
     let pixels = u64::from(width) * u64::from(height);
-    if pixels > limits.picture_pixels {
-        return too_large("the number of pixels", limits.picture_pixels, pixels);
-    }
-    Ok(())
+    PlanError::over("the number of pixels", pixels, limits.picture_pixels, None)
 }
 
 fn check_shadow_texels(shadows: &[ShadowPass], limits: &Limits) -> Result<(), PlanError> {
-    let value = shadows.iter().map(ShadowPass::texels).sum();
-    if value <= limits.shadow_texels {
-        return Ok(());
-    }
-    let what = "the number of texels of all shadow maps".to_owned();
-    Err(PlanError::TooLarge { what, limit: limits.shadow_texels, value, setting: None })
+    let texels = shadows.iter().map(ShadowPass::texels).sum();
+    PlanError::over("the number of texels of all shadow maps", texels, limits.shadow_texels, None)
 }
 
 fn background(scene: &Scene, request: &FrameRequest) -> Result<Background, PlanError> {

@@ -79,7 +79,7 @@ impl Plan {
 
     /// `2048² texels`: of one map of a light.
     fn texels(&self, light: u32) -> Option<String> {
-        let shadow = self.scene.lights[light as usize].shadow?;
+        let shadow = self.knobs.shadow(self.scene.lights[light as usize].shadow?);
         Some(format!("{}² texels", shadow.resolution))
     }
 

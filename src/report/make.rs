@@ -14,9 +14,10 @@ use super::subject::{self, Subject};
 use super::sweep::{Candidate, Family, Sweep};
 use super::timing::{self, Sample, Timing};
 use super::{AtTime, Failed, Meta, Parts, Point, Report, Threads, Truth};
+use crate::limits::Limits;
 use crate::pipeline::{Cancelled, Pixels, Work};
 use crate::plan::request::Preset;
-use crate::plan::{Elisions, FrameRequest, Output, Plan};
+use crate::plan::{Elisions, FrameRequest, Output, Plan, PlanError};
 use crate::settings::Simd;
 use serde::Serialize;
 use std::ops::RangeInclusive;
@@ -129,8 +130,9 @@ pub fn make(subject: &Subject, options: &Options, tell: Tell, work: &Work) -> Re
     let stability = making.stability()?;
 
     let measured = candidates.iter().zip(errors).zip(&samples);
-    let mut points: Vec<Point> =
-        measured.map(|((candidate, erred), samples)| point(candidate, erred, samples, truth.noise)).collect();
+    let mut points: Vec<Point> = measured
+        .map(|((candidate, erred), samples)| making.point(candidate, erred, samples, truth.noise))
+        .collect();
     let front = mark_front(&mut points, truth.noise);
     Ok(Report {
         meta: making.meta(samples[0].len()),
@@ -179,6 +181,7 @@ impl<'a> Making<'a> {
         let began = Instant::now();
         let subject = in_report_size(subject, options.width)?;
         let plan = Plan::new(&subject.scene, &subject.request, &subject.limits)?;
+        check_size(&plan, &subject.limits)?;
         let sweep = Sweep::of(&plan, &options.knobs);
         let cold_ms = subject.sample(&Setting::of(&plan), work)?.total;
         Ok(Self { subject, options, plan, sweep, tell, work, began, cold_ms })
@@ -229,7 +232,9 @@ impl<'a> Making<'a> {
     fn error(&self, setting: &Setting, truth: &Reference) -> Result<Erred, Failed> {
         let (radiance, frame) = self.subject.draw(setting, self.work)?;
         let Pixels::Rgba8 { pixels, .. } = &frame.pixels else { unreachable!("colour is in bytes") };
-        let error = PictureError::of(&radiance, pixels, truth, self.work.level);
+        // The structural similarity is summed in the pool that it finds itself in.
+        let compare = || PictureError::of(&radiance, pixels, truth, self.work.level);
+        let error = self.work.pool.install(compare);
         Ok((error, frame.stats.entries().to_vec()))
     }
 
@@ -317,6 +322,21 @@ impl<'a> Making<'a> {
         counts.filter_map(|threads| timed(threads).transpose()).collect()
     }
 
+    fn point(&self, candidate: &Candidate, (err, counters): Erred, samples: &[Sample], floor: f64) -> Point {
+        Point {
+            scene: self.options.name.clone(),
+            families: candidate.families.clone(),
+            knobs: candidate.setting,
+            floor,
+            near_floor: err.clamped.rmse < 3.0 * floor,
+            err,
+            t: Timing::of(samples),
+            passes: timing::passes(samples),
+            counters,
+            pareto: false,
+        }
+    }
+
     fn meta(&self, rounds: usize) -> Meta {
         let hash: String = self.plan.scene.content.iter().map(|byte| format!("{byte:02x}")).collect();
         Meta {
@@ -348,19 +368,6 @@ impl<'a> Making<'a> {
     }
 }
 
-fn point(candidate: &Candidate, (err, counters): Erred, samples: &[Sample], floor: f64) -> Point {
-    Point {
-        families: candidate.families.clone(),
-        knobs: candidate.setting,
-        near_floor: err.clamped.rmse < 3.0 * floor,
-        err,
-        t: Timing::of(samples),
-        passes: timing::passes(samples),
-        counters,
-        pareto: false,
-    }
-}
-
 /// The frame of `subject` as colours, `width` pixels wide.
 fn in_report_size(subject: &Subject, width: u32) -> Result<Subject, Failed> {
     // A width without a height says nothing about the frame's shape.
@@ -372,6 +379,14 @@ fn in_report_size(subject: &Subject, width: u32) -> Result<Subject, Failed> {
     let height = (f64::from(width) * own_height / own_width).round().clamp(1.0, 16384.0) as u32;
     let request = FrameRequest { width: Some(width), height: Some(height), ..asked };
     Ok(Subject { request, ..subject.clone() })
+}
+
+/// Whether the references of a report fit into memory.
+fn check_size(plan: &Plan, limits: &Limits) -> Result<(), PlanError> {
+    let pixels = u64::from(plan.size[0]) * u64::from(plan.size[1]);
+    PlanError::over("the number of pixels of a report", pixels, limits.report_pixels, None)?;
+    let bytes = subject::of_reference(plan).triangle_bytes();
+    PlanError::over_memory("memory of the reference's triangles", bytes, limits)
 }
 
 /// Parts of the picture's pixels that a first look at the reference takes: one of sixteen.

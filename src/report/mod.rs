@@ -9,7 +9,7 @@
 
 pub mod choose;
 mod component;
-mod cost;
+pub mod cost;
 pub mod determinism;
 pub mod error;
 pub mod fit;
@@ -41,7 +41,7 @@ use error::PictureError;
 use front::Between;
 use machine::Machine;
 use selftest::Measurement;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
@@ -142,19 +142,25 @@ pub struct Truth {
 /// A setting that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
+    /// What the scene is called.
+    pub scene: String,
     /// Every family that it belongs to.
     pub families: Vec<Family>,
     /// What the knobs were turned to.
     pub knobs: Setting,
     /// How far it is from the reference.
     pub err: PictureError,
+    /// The reference's own error.
+    pub floor: f64,
     /// Whether its error is so small that the reference's own may hide it.
     pub near_floor: bool,
     /// Milliseconds, from the request to the last pixel.
     pub t: Timing,
     /// Medians of each pass in milliseconds, planning and encoding as PNG among them.
+    #[serde(serialize_with = "as_map")]
     pub passes: Vec<(&'static str, f64)>,
     /// What was done.
+    #[serde(serialize_with = "as_map")]
     pub counters: Vec<(&'static str, u64)>,
     /// Whether no other beats it in both error and time.
     pub pareto: bool,
@@ -175,8 +181,10 @@ pub struct Parts {
     /// Of the default.
     pub total: f64,
     /// Of everything at its best but one knob at the default.
+    #[serde(serialize_with = "as_map")]
     pub degrade_one: Vec<(Knob, f64)>,
     /// Of the default but one knob at its best.
+    #[serde(serialize_with = "as_map")]
     pub repair_one: Vec<(Knob, f64)>,
     /// Root of the sum of the squares of `degrade_one`.
     pub sum: f64,
@@ -191,4 +199,12 @@ pub struct Threads {
     pub threads: usize,
     /// Milliseconds.
     pub ms: f64,
+}
+
+/// Names and their numbers as an object, in their order.
+fn as_map<K: Serialize, V: Serialize, S: Serializer>(
+    pairs: &[(K, V)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(name, number)| (name, number)))
 }

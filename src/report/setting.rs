@@ -244,7 +244,8 @@ impl Serialize for Setting {
         let parameters = self.parameters();
         let mut map = serializer.serialize_map(Some(parameters.len()))?;
         for (name, value) in parameters {
-            match value.parse::<f64>() {
+            // A number, whole or not, stays as it is written.
+            match serde_json::from_str::<serde_json::Number>(&value) {
                 Ok(number) => map.serialize_entry(name, &number)?,
                 Err(_) => map.serialize_entry(name, &value)?,
             }

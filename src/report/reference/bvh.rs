@@ -51,6 +51,10 @@ enum Content {
 /// Triangles that a leaf may hold.
 const LEAF: usize = 4;
 
+/// Memory of a triangle's place in the order, and of its share of the tree: leaves hold two triangles or more, and
+/// there are fewer splits than leaves.
+pub const TRIANGLE_BYTES: u64 = (size_of::<u32>() + 2 * size_of::<Node>()) as u64;
+
 /// Levels of the tree, and more: each halves the triangles, which are counted in 32 bits.
 const DEPTH: usize = 40;
 

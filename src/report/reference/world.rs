@@ -1,6 +1,6 @@
 //! All triangles of a scene in their places, and what rays find among them.
 
-use super::bvh::{Bvh, Hit, Ray};
+use super::bvh::{self, Bvh, Hit, Ray};
 use super::point::{self, Point};
 use super::texture;
 use crate::model::normals::unit;
@@ -55,6 +55,11 @@ pub struct Layer {
     /// How much of it is there, over 0.
     pub alpha: f64,
 }
+
+/// Memory of a triangle: its corners, its place in the order and its share of the tree, in vectors that grew by
+/// doubling and so are up to twice as large.
+pub const TRIANGLE_BYTES: u64 =
+    2 * (size_of::<[DVec3; 3]>() + size_of::<Face>()) as u64 + bvh::TRIANGLE_BYTES;
 
 /// Distances that differ by no more than this part are equal: coplanar surfaces are, but for rounding.
 const SAME: f64 = 1e-11;
