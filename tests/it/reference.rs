@@ -70,8 +70,8 @@ const SMOOTH: Bound = Bound { mean: 0.125, most: 1.0 };
 
 /// With texels of about twelve pixels. A line between two of them bends by up to 2 · 255 / 12 a pixel, by
 /// a third of that in the mean of random ones; where that happens within a pixel its mean is an eighth of
-/// that off its middle. One pixel in six has such a bend.
-const BLOTCHED: Bound = Bound { mean: 0.3, most: 5.0 };
+/// that off its middle, 5.3 at the most. One pixel in six has such a bend, and one in 144 one each way.
+const BLOTCHED: Bound = Bound { mean: 0.3, most: 5.3 };
 
 /// Compares radiance, clamped to 0–1, in those pixels of `of` that are no edge of anything. `least` is the
 /// share of the picture that they must be.

@@ -95,6 +95,31 @@ fn samples_half_a_pixel_beside_their_place_are_caught() {
     assert_eq!(fit.pass, Some(false), "{fit:?}");
 }
 
+/// The errors of a picture of few pixels, interpolated, over the size of a drawn pixel.
+fn scale_errors() -> Vec<(f64, Difference)> {
+    let scene = scene(&scattered_triangles());
+    let effort = Effort { base: 4, most: 512, noise: 0.0, aim: Aim::Pixel };
+    let truth = truth(&planned(&scene, output(Output::Radiance)), effort);
+    let of = |scale: f64| {
+        let knobs = Knobs { render_scale: Some(scale), ..Knobs::default() };
+        let request = FrameRequest { samples: Some(1), knobs, ..output(Output::Radiance) };
+        let drawn = radiance(&planned(&scene, request));
+        (1.0 / scale, difference(&drawn, &truth.radiance, None))
+    };
+    [0.25, 0.5, 0.75, 1.0].map(of).to_vec()
+}
+
+/// The windows of the report's own laws, whose derivation stands there.
+#[test]
+fn a_picture_of_few_pixels_blurs_edges_by_their_size() {
+    let errors = scale_errors();
+    let law = |metric, window| Law { knob: Knob::RenderScale, metric, region: Region::All, window };
+    let fit = fitted(&law(Metric::Mae, Some([0.85, 1.15])), &of_metric(&errors, |error| error.mae));
+    assert_eq!(fit.pass, Some(true), "{fit:?}");
+    let fit = fitted(&law(Metric::Rmse, Some([0.55, 0.75])), &of_metric(&errors, |error| error.rmse));
+    assert_eq!(fit.pass, Some(true), "{fit:?}");
+}
+
 /// A star of bars that hover over a floor, under a slanted sun; the camera looks straight down between them.
 fn bars_over_a_floor() -> Value {
     let mut instances = json!({ "floor": { "mesh": "floor" } });
