@@ -6,51 +6,28 @@
 use super::choose::{Choice, Source};
 use super::setting::Setting;
 use crate::model::texture;
-use crate::plan::{Filter, Plan};
+use crate::plan::{Face, Filter, Item, Plan, ShadowPass};
 
-/// Nanoseconds of one thread for a unit of work.
-struct Rates {
-    /// A triangle seen by the camera.
-    triangle: f64,
-    /// A triangle in a shadow map.
-    caster: f64,
-    /// A texel of a shadow map, with its share of the pyramid.
-    shadow_texel: f64,
-    /// A drawn pixel.
-    pixel: f64,
-    /// Each sample of a drawn pixel.
-    sample: f64,
-    /// A light at a drawn pixel.
-    light: f64,
-    /// A shadow at a drawn pixel, but for its taps.
-    shadow: f64,
-    /// A tap; most pixels need none.
-    tap: f64,
-    /// A texture at a drawn pixel.
-    texture: f64,
-    /// A pass over the neighbours of each drawn pixel.
-    neighbourhood: f64,
-    /// A finished pixel: resampling it.
-    resampled: f64,
-    /// A finished pixel: encoding it.
-    encoded: f64,
-}
+/// Kinds of work, and the nanoseconds that one thread takes for a unit of each.
+///
+/// `cargo run --release --example cost_rates` measures them: those here are of an x86-64 core with AVX-512 at 2.1 GHz.
+pub const RATES: [(&str, f64); KINDS] = [
+    ("triangles in the view", 90.0),
+    ("triangles in shadow maps", 45.0),
+    ("texels of shadow maps", 0.35),
+    ("drawn pixels", 14.0),
+    ("samples of drawn pixels", 2.5),
+    ("lights at drawn pixels", 9.0),
+    ("shadows at drawn pixels", 9.0),
+    ("taps at drawn pixels", 0.25),
+    ("textures at drawn pixels", 12.0),
+    ("passes over drawn pixels", 9.0),
+    ("resampled pixels", 25.0),
+    ("encoded pixels", 14.0),
+];
 
-/// Of an x86-64 core with AVX-512 at about 2.5 GHz: the gallery's scenes and the demo at 320 × 240 and 800 × 600.
-const RATES: Rates = Rates {
-    triangle: 90.0,
-    caster: 45.0,
-    shadow_texel: 0.35,
-    pixel: 14.0,
-    sample: 2.5,
-    light: 9.0,
-    shadow: 9.0,
-    tap: 0.25,
-    texture: 12.0,
-    neighbourhood: 9.0,
-    resampled: 25.0,
-    encoded: 14.0,
-};
+/// How many kinds of work there are.
+pub const KINDS: usize = 12;
 
 /// How much of the threads' time is work.
 const PARALLEL: f64 = 0.85;
@@ -64,35 +41,34 @@ pub fn expected(setting: Setting, plan: &Plan, threads: usize) -> Choice {
     Choice { setting, error: error(&setting, plan), ms, source: Source::Model }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "counts of an estimate")]
 fn nanoseconds(setting: &Setting, plan: &Plan) -> f64 {
-    let rates = &RATES;
-    let finished = f64::from(plan.size[0]) * f64::from(plan.size[1]);
-    let drawn = finished * setting.render_scale * setting.render_scale;
-    let triangles: usize = plan.items.iter().map(|item| item.mesh.triangles.len()).sum();
-    let textures = plan.draws.iter().map(|draw| draw.surface.maps().count()).max().unwrap_or(0);
-    let a_pixel = rates.pixel
-        + rates.sample * f64::from(setting.samples)
-        + rates.light * plan.lights.len() as f64
-        + rates.texture * textures as f64
-        + rates.neighbourhood * plan.post.passes.len() as f64
-        + plan.shadows.iter().map(|pass| rates.shadow + rates.tap * taps(setting, &pass.filter)).sum::<f64>();
-    let resampled = if setting.render_scale == 1.0 { 0.0 } else { rates.resampled };
-    triangles as f64 * rates.triangle
-        + shadow_maps(setting, plan)
-        + drawn * a_pixel
-        + finished * (resampled + rates.encoded)
+    RATES.iter().zip(amounts(setting, plan)).map(|((_, rate), amount)| rate * amount).sum()
 }
 
+/// How much of each kind of work the picture of `plan` takes at `setting`.
 #[expect(clippy::cast_precision_loss, reason = "counts of an estimate")]
-fn shadow_maps(setting: &Setting, plan: &Plan) -> f64 {
-    let faces = plan.shadows.iter().flat_map(|pass| pass.faces());
-    let face = |face: &crate::plan::Face| {
-        let side = f64::from(setting.shadow_resolution.unwrap_or(face.view.width));
-        let casters: usize = face.items.iter().map(|item| item.mesh.triangles.len()).sum();
-        side * side * RATES.shadow_texel + casters as f64 * RATES.caster
-    };
-    faces.map(face).sum()
+#[must_use]
+pub fn amounts(setting: &Setting, plan: &Plan) -> [f64; KINDS] {
+    let finished = f64::from(plan.size[0]) * f64::from(plan.size[1]);
+    let drawn = finished * setting.render_scale * setting.render_scale;
+    let triangles = |items: &[Item]| items.iter().map(|item| item.mesh.triangles.len()).sum::<usize>() as f64;
+    let faces = || plan.shadows.iter().flat_map(|pass| pass.faces());
+    let texels = |face: &Face| f64::from(setting.shadow_resolution.unwrap_or(face.view.width)).powi(2);
+    let textures = plan.draws.iter().map(|draw| draw.surface.maps().count()).max().unwrap_or(0);
+    [
+        triangles(&plan.items),
+        faces().map(|face| triangles(&face.items)).sum(),
+        faces().map(texels).sum(),
+        drawn,
+        drawn * f64::from(setting.samples),
+        drawn * plan.lights.len() as f64,
+        drawn * plan.shadows.len() as f64,
+        drawn * plan.shadows.iter().map(|pass| taps(setting, &pass.filter)).sum::<f64>(),
+        drawn * textures as f64,
+        drawn * plan.post.passes.len() as f64,
+        if setting.render_scale == 1.0 { 0.0 } else { finished },
+        finished,
+    ]
 }
 
 fn taps(setting: &Setting, filter: &Filter) -> f64 {
@@ -112,7 +88,7 @@ fn error(setting: &Setting, plan: &Plan) -> f64 {
     let pixel = 1.0 / setting.render_scale;
     let coverage = 0.03 * f64::from(setting.samples).powf(-0.65) * pixel.sqrt();
     let blur = if pixel > 1.0 { 0.03 * (pixel - 1.0).sqrt() } else { 0.0 };
-    let shadow = |pass: &crate::plan::ShadowPass| {
+    let shadow = |pass: &ShadowPass| {
         let own = pass.faces().first().map_or(1024, |face| face.view.width);
         let side = f64::from(setting.shadow_resolution.unwrap_or(own));
         let noise = match taps(setting, &pass.filter) {
