@@ -20,9 +20,8 @@ use std::time::Instant;
 /// Rounds of timing; each draws every scene with everything left out and with all but one elision.
 const ROUNDS: usize = 15;
 
-/// The picture that is timed, and the one whose instructions are counted.
-const TIMED: [u32; 2] = [320, 240];
-const COUNTED: [u32; 2] = [96, 72];
+/// The picture that is timed, and whose instructions are counted.
+const SIZE: [u32; 2] = [320, 240];
 
 /// A name in the table, and the scene.
 type Case = (&'static str, Arc<Scene>);
@@ -36,8 +35,8 @@ fn main() {
     }
 }
 
-/// What is measured: the demo, soft shadows, many triangles, a scene that needs next to nothing, and one that
-/// does not know what it needs.
+/// What is measured: the demo, soft shadows, many triangles, a scene that needs next to nothing, one that does not
+/// know what it needs, and one whose shadows fall on nothing.
 fn cases() -> Vec<Case> {
     let of_gallery = |name: &'static str| {
         let new = gallery::find(name).expect("a piece of the gallery").to_scene();
@@ -57,24 +56,41 @@ fn cases() -> Vec<Case> {
         of_gallery("triangles"),
         ("flat triangle", compiled(&flat, &Files::default())),
         ("careless", compiled(&careless(), &Files::default())),
+        ("no receivers", compiled(&without_receivers(), &Files::default())),
     ]
 }
 
-/// A scene that asks for much that it does not need: lights that are out, a lamp behind which nothing stands,
-/// balls behind the camera and beside the view, a map of one colour, effects of no strength.
+/// A scene that asks for much that it does not need: lights that are out, a lamp with a ball above it that casts its
+/// shadow on nothing, balls behind the camera and beside the view, a map of one colour, effects of no strength.
 fn careless() -> Value {
     let lamp = |z: f64, intensity: f64| json!({ "type": "point", "position": [0.5, 2, z], "intensity": intensity, "shadow": { "resolution": 512 } });
-    let ball = |x: f64, z: f64| json!({ "mesh": "ball", "material": "painted", "translation": [x, 0.5, z] });
+    let ball = |at: [f64; 3]| json!({ "mesh": "ball", "material": "painted", "translation": at });
     json!({
         "camera": { "position": [2.5, 1.8, 3.5], "target": [0, 0.4, 0], "fov_y_deg": 35 },
         "lights": { "lamp": lamp(1.5, 3.0), "out": lamp(-1.5, 0.0), "off": lamp(0.0, 0.0) },
         "textures": { "paint": { "checker": { "colors": ["#b07030", "#b07030"], "cells": 1 }, "filter": "nearest" } },
         "materials": { "painted": { "diffuse_map": "paint" } },
         "meshes": { "ball": { "type": "sphere" }, "floor": { "type": "plane", "size": [8, 8] } },
-        "instances": { "a": ball(0.0, 0.0), "b": ball(0.3, 20.0), "c": ball(30.0, 0.0), "d": ball(1.7, 1.2),
+        "instances": { "a": ball([0.0, 0.5, 0.0]), "b": ball([0.3, 0.5, 20.0]), "c": ball([30.0, 0.5, 0.0]),
+            "d": ball([1.7, 0.5, 1.2]), "above": ball([0.5, 3.0, 1.5]),
             "floor": { "mesh": "floor", "material": "painted" } },
         "post": [{ "type": "blur", "radius": 0 }, { "type": "grayscale", "amount": 0 }],
     })
+}
+
+/// Balls under a sun, none of which takes a shadow.
+fn without_receivers() -> Value {
+    let mut document = json!({
+        "camera": { "position": [4, 4, 8], "target": [0, 0.4, 0], "fov_y_deg": 35 },
+        "lights": { "sun": { "type": "directional", "direction": [-0.5, -1, -0.4], "shadow": {} } },
+        "meshes": { "ball": { "type": "sphere" } },
+    });
+    for i in 0..9 {
+        let at = [f64::from(i % 3) * 1.5 - 1.5, 0.5, f64::from(i / 3) * 1.5 - 1.5];
+        document["instances"][format!("ball{i}")] =
+            json!({ "mesh": "ball", "translation": at, "receives_shadow": false });
+    }
+    document
 }
 
 fn compiled(json: &Value, files: &Files) -> Arc<Scene> {
@@ -82,8 +98,9 @@ fn compiled(json: &Value, files: &Files) -> Arc<Scene> {
     Arc::new(scene::compile(&document, files, None, &Limits::default()).expect("the scene compiles").scene)
 }
 
-fn request([width, height]: [u32; 2], elide: Elisions) -> FrameRequest {
-    FrameRequest { width: Some(width), height: Some(height), elide: Some(elide), ..FrameRequest::default() }
+fn request(elide: Elisions) -> FrameRequest {
+    let [width, height] = SIZE.map(Some);
+    FrameRequest { width, height, elide: Some(elide), ..FrameRequest::default() }
 }
 
 /// Plans and draws a frame. Never inlined: valgrind counts the instructions of this function.
@@ -105,11 +122,11 @@ fn print_tables() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     let cancel = AtomicBool::new(false);
     let work = Work { pool: &pool, cancel: &cancel, level: Level::new(), order: Order::Rows };
-    println!("Time of a frame, more without than with, 1 thread, {} × {}:\n", TIMED[0], TIMED[1]);
+    println!("Time of a frame, more without than with, 1 thread, {} × {}:\n", SIZE[0], SIZE[1]);
     let times: Vec<Vec<f64>> = cases.iter().map(|(_, scene)| times(scene, &work)).collect();
     print_table(&names, &times);
     if let Some(counts) = names.iter().map(|name| instructions(name)).collect::<Option<Vec<_>>>() {
-        println!("\nInstructions of a frame, more without than with, {} × {}:\n", COUNTED[0], COUNTED[1]);
+        println!("\nInstructions of a frame, more without than with, {} × {}:\n", SIZE[0], SIZE[1]);
         print_table(&names, &counts);
     } else {
         println!("\nInstructions are counted where valgrind is installed.");
@@ -120,7 +137,7 @@ fn print_tables() {
 /// out.
 fn times(scene: &Arc<Scene>, work: &Work) -> Vec<f64> {
     let seconds = |elide| {
-        let request = request(TIMED, elide);
+        let request = request(elide);
         let began = Instant::now();
         measured_frame(scene, &request, work);
         began.elapsed().as_secs_f64()
@@ -178,7 +195,7 @@ fn draw_each_once(name: &str) {
     let work = Work { pool: &pool, cancel: &cancel, level, order: Order::Rows };
     let (_, scene) = cases().into_iter().find(|(known, _)| *known == name).expect("the name of a scene");
     for elide in [Elisions::ALL].into_iter().chain(choices()) {
-        measured_frame(&scene, &request(COUNTED, elide), &work);
+        measured_frame(&scene, &request(elide), &work);
     }
 }
 

@@ -13,8 +13,8 @@ use rasterd::encode;
 use rasterd::limits::Limits;
 use rasterd::pipeline::{Frame, Pixels, Stats, Timings};
 use rasterd::plan::request::BackgroundRequest;
-use rasterd::plan::{FrameRequest, Output};
-use rasterd::scene::{Files, gallery};
+use rasterd::plan::{Elisions, FrameRequest, Output};
+use rasterd::scene::{Files, Scene, gallery};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -107,7 +107,16 @@ fn stored(name: &str) -> Frame {
 }
 
 fn draw(document: &Value, files: &Files, request: &FrameRequest) -> Frame {
-    frame(&scene_with(document, files), request)
+    draw_scene(&scene_with(document, files), request)
+}
+
+/// Draws a scene, with all that it can be spared and with nothing spared: both are one picture.
+#[track_caller]
+fn draw_scene(scene: &Arc<Scene>, request: &FrameRequest) -> Frame {
+    let drawn = |elide| frame(scene, &FrameRequest { elide: Some(elide), ..request.clone() });
+    let spared = drawn(Elisions::ALL);
+    assert!(spared.pixels == drawn(Elisions::NONE).pixels, "another picture with nothing spared");
+    spared
 }
 
 /// Draws a document without files as it is.
@@ -523,6 +532,6 @@ fn golden_gallery() {
     let request = FrameRequest { width: Some(160), height: Some(120), ..FrameRequest::default() };
     for piece in gallery::pieces() {
         let scene = piece.to_scene().compile(&Limits::default()).expect("a scene");
-        assert_golden(&format!("gallery/{}", piece.name), &frame(&Arc::new(scene), &request));
+        assert_golden(&format!("gallery/{}", piece.name), &draw_scene(&Arc::new(scene), &request));
     }
 }
