@@ -1,5 +1,6 @@
 //! How a stage spreads its work over the threads, and how it is told to stop.
 
+use crate::math::keeps_subnormals;
 use crate::math::simd::Level;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -90,6 +91,9 @@ impl Work<'_> {
     ///
     /// # Errors
     /// [`Cancelled`] if the flag was set before the last item was served.
+    ///
+    /// # Panics
+    /// If a thread loses subnormal numbers: what it drew would differ, and nothing would say so.
     pub fn map<T, R, C>(
         &self,
         items: Vec<T>,
@@ -112,6 +116,7 @@ impl Work<'_> {
                 || next.load(Ordering::Relaxed) >= count
         };
         let serve = || {
+            assert!(keeps_subnormals(), "something has made this thread lose subnormal numbers");
             let began = Instant::now();
             let mut scratch = scratch();
             while !over() && began.elapsed() < SLICE {

@@ -283,6 +283,8 @@ pub const CASES: &[Case] = &[
         determinism::the_demo_is_the_same_to_the_byte,
         determinism::data_outputs_are_the_same_to_the_byte,
         determinism::textures_shadows_and_samples_are_the_same_to_the_byte,
+        determinism::soft_shadows_are_the_same_to_the_byte,
+        determinism::resampled_pictures_are_the_same_to_the_byte,
         determinism::transparency_is_the_same_to_the_byte,
         determinism::relief_is_the_same_to_the_byte,
         determinism::radiance_depth_and_codes_are_the_same_to_the_byte,

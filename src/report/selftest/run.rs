@@ -62,7 +62,7 @@ pub fn run(
 }
 
 /// What one check measures; a panic is a measurement too.
-fn measure(case: &'static str, check: Check, effort: Effort) -> Vec<Measurement> {
+pub(super) fn measure(case: &'static str, check: Check, effort: Effort) -> Vec<Measurement> {
     let mut ledger = Ledger::new(case, effort);
     let ended = catch_unwind(AssertUnwindSafe(|| check(&mut ledger)));
     let mut rows = ledger.into_measurements();

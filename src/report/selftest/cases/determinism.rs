@@ -1,12 +1,14 @@
 //! The same bytes for every number of threads, every SIMD level, every order of tiles and every run (B49).
 
 use crate::pipeline::Order;
-use crate::plan::{FrameRequest, Output};
+use crate::plan::request::{BackgroundRequest, Knobs};
+use crate::plan::{Filter, FrameRequest, Output};
 use crate::report::selftest::instruments::draw::{
-    Picture, bytes_of, file, frame, levels, output, png, samples, scene_with,
+    Picture, bytes_of, file, frame, levels, output, plan, png, samples, scene_with,
 };
 use crate::report::selftest::instruments::engine::Engine;
-use crate::report::selftest::{Ledger, named};
+use crate::report::selftest::run::measure;
+use crate::report::selftest::{CASES, Case, Effort, Ledger};
 use crate::scene::{Files, Scene, demo};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -31,10 +33,14 @@ fn matrix() -> Vec<(String, Engine)> {
     engines
 }
 
-/// What part of the matrix a quick run draws with: every 13th engine, from another one on for each picture
+/// From an engine of the matrix to one with other threads and another order, and mostly another level. There
+/// are 20 engines a level, with no factor in common: every one is met in the end.
+const STRIDE: usize = 13;
+
+/// What part of the matrix a quick run draws with: one engine a stride, from another one on for each picture
 /// of a scene, so that few of them meet all of its rows and columns. In a build that carries the scalar level,
 /// which is compiled without optimisation, one engine a picture.
-const SAMPLED: usize = if cfg!(feature = "scalar") { 20 } else { 13 };
+const SAMPLED: usize = if cfg!(feature = "scalar") { 20 } else { STRIDE };
 
 /// One thread, at the SIMD level of the run.
 fn alone() -> Engine {
@@ -128,6 +134,42 @@ pub fn textures_shadows_and_samples_are_the_same_to_the_byte(ledger: &mut Ledger
     all_the_same(ledger, "orthographic", &scene, &[1, 4].map(|n| sized(131, 77, samples(n))));
 }
 
+/// The busy scene in soft shadows: of each kind of light one with a kernel of fixed size, and one with an area.
+fn softly_lit() -> Value {
+    let mut document = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
+    let lights = &mut document["lights"];
+    lights["sun"]["shadow"] = json!({ "filter": "pcss", "resolution": 300, "light_radius": 0.05 });
+    lights["side"]["shadow"] = json!({ "filter": "pcf", "resolution": 200, "radius": 2.5 });
+    lights["lamp"]["shadow"] = json!({ "filter": "pcf", "resolution": 64 });
+    lights["bulb"] = json!({ "type": "point", "position": [-1.5, 1.8, 1.2], "intensity": 2,
+        "shadow": { "filter": "pcss", "resolution": 64, "light_radius": 0.1 } });
+    document
+}
+
+pub fn soft_shadows_are_the_same_to_the_byte(ledger: &mut Ledger) {
+    let scene = scene_with(&softly_lit(), &noise());
+    let of = |what: Output, count: u32| small(&output(what), count);
+    let requests =
+        [of(Output::Color, 1), of(Output::Color, 8), of(Output::Radiance, 2), of(Output::ShadowMap, 1)];
+    let lights = plan(&scene, &requests[0]).shadows;
+    let soft = lights.iter().filter(|pass| !matches!(pass.filter, Filter::Hard)).count();
+    ledger.holds("soft shadows", "lights without a kernel", soft == 4);
+    all_the_same(ledger, "soft shadows", &scene, &requests);
+}
+
+pub fn resampled_pictures_are_the_same_to_the_byte(ledger: &mut Ledger) {
+    let scene = scene_with(&glassy(), &noise());
+    let scaled = |render_scale: f64, what: Output| FrameRequest {
+        knobs: Knobs { render_scale: Some(render_scale), ..Knobs::default() },
+        background: Some(BackgroundRequest::Transparent),
+        ..small(&output(what), 4)
+    };
+    let requests = [scaled(0.6, Output::Color), scaled(1.7, Output::Color), scaled(0.6, Output::Radiance)];
+    let as_drawn = requests.iter().filter(|request| !plan(&scene, request).is_resampled()).count();
+    ledger.none_of("resampled", "pictures that are left as they are drawn", as_drawn, requests.len());
+    all_the_same(ledger, "resampled", &scene, &requests);
+}
+
 /// The busy scene with everything transparent in its own way.
 pub fn glassy() -> Value {
     let mut document = busy(json!({ "position": [2, 1.5, 3], "target": [0, 0.4, 0] }));
@@ -213,25 +255,29 @@ pub fn pictures_with_effects_are_the_same_to_the_byte(ledger: &mut Ledger) {
     }
 }
 
-/// The catalogue itself, with other engines than that of the run: what holds for one holds for all.
+/// Cases that a quick run measures with other engines too.
+const QUICK: &[&str] = if cfg!(feature = "scalar") { &["B12"] } else { &["B2", "B12", "B14", "B21", "B28"] };
+
+/// Cases to measure with other engines, one after the other. In an exhaustive run those are all, two times, but
+/// for the two that compare engines and builds themselves.
+fn turns(effort: Effort) -> impl Iterator<Item = &'static Case> {
+    let is_measured = move |case: &&Case| match effort {
+        Effort::Quick => QUICK.contains(&case.id),
+        Effort::Exhaustive => !case.checks.is_empty() && !["B49", "B50"].contains(&case.id),
+    };
+    std::iter::repeat_n(CASES, effort.pick(1, 2)).flatten().filter(is_measured)
+}
+
+/// The catalogue itself, with other engines than that of the run: what holds for one holds for all. Its cases are
+/// as large as in a quick run.
 pub fn the_catalogue_holds_for_other_engines(ledger: &mut Ledger) {
-    let quick: &[&str] =
-        if cfg!(feature = "scalar") { &["B12"] } else { &["B2", "B12", "B14", "B21", "B28"] };
-    let rest = [
-        "B1", "B4", "B6", "B7", "B8", "B9", "B13", "B17", "B22", "B24", "B30", "B33", "B34", "B40", "B44",
-        "B46",
-    ];
-    let cases: Vec<String> =
-        quick.iter().chain(ledger.effort.pick(&[][..], &rest)).map(|id| (*id).to_owned()).collect();
-    let (lowest, level) = levels()[0];
-    let engine = Engine { threads: 3, level, order: Order::Shuffled(0x50), ..Engine::current() };
-    for case in named(&cases).expect("cases of the catalogue") {
-        for check in case.checks {
-            let mut inner = Ledger::new(case.id, ledger.effort);
-            engine.drive(|| check(&mut inner));
-            let rows = inner.into_measurements();
+    let engines = matrix();
+    for (turn, case) in turns(ledger.effort).enumerate() {
+        let (setting, engine) = &engines[turn * STRIDE % engines.len()];
+        let setting = format!("{}, {setting}", case.id);
+        for &check in case.checks {
+            let rows = engine.drive(|| measure(case.id, check, Effort::Quick));
             let out = rows.iter().filter(|row| row.is_out()).count();
-            let setting = format!("{}, {lowest}, 3 threads, shuffled", case.id);
             ledger.none_of(&setting, "measurements out with another engine", out, rows.len());
         }
     }
@@ -272,5 +318,20 @@ pub fn pictures_of_every_size_are_crops_of_a_larger_one(ledger: &mut Ledger) {
             .zip(0..)
             .filter(|&(pixel, i)| *pixel != large[((top + i / w) * width + left + i % w) as usize]);
         ledger.none_of(&format!("{w} × {h}"), "pixels unlike the larger one", differing.count(), small.len());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_engine_has_a_turn_in_an_exhaustive_run() {
+        let engines = matrix().len();
+        let mut met: Vec<usize> =
+            (0..turns(Effort::Exhaustive).count()).map(|turn| turn * STRIDE % engines).collect();
+        met.sort_unstable();
+        met.dedup();
+        assert_eq!(met.len(), engines);
     }
 }

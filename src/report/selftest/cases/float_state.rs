@@ -1,24 +1,22 @@
 //! What a thread or a compiler could change about floats (B50).
 
 use super::determinism::{busy, glassy, noise, small};
+use crate::math::keeps_subnormals;
 use crate::pipeline::Pixels;
 use crate::plan::{FrameRequest, Output};
 use crate::report::selftest::Ledger;
-use crate::report::selftest::instruments::draw::{bytes_of, frame, output, pool, scene_with};
+use crate::report::selftest::instruments::draw::{bytes_of, frame, output, scene_with};
+use crate::report::selftest::instruments::engine::Engine;
 use serde_json::{Value, json};
-use std::hint::black_box;
-
-/// The least normal f32 is 2⁻¹²⁶: 2⁻¹⁴⁰ and its half are subnormal, or lost.
-fn keeps_subnormals() -> bool {
-    // The least of all is 2⁻¹⁴⁹, the lowest bit.
-    let tiny = black_box(f32::from_bits(1 << 9));
-    tiny * black_box(0.5) == f32::from_bits(1 << 8)
-}
 
 /// A thread that flushes subnormal numbers to 0 draws other depths; no compiler sets that, but libraries do.
+/// The threads are those that draw, and have drawn: what something sets on the way stays.
 pub fn every_thread_keeps_subnormal_numbers(ledger: &mut Ledger) {
+    let scene = scene_with(&glassy(), &noise());
     for threads in [1, 2, 3, 7, 16] {
-        let kept = pool(threads).broadcast(|_| keeps_subnormals());
+        let engine = Engine { threads, ..Engine::current() };
+        drop(engine.drive(|| frame(&scene, &small(&output(Output::Color), 1))));
+        let kept = engine.work().pool.broadcast(|_| keeps_subnormals());
         let lost = kept.iter().filter(|kept| !**kept).count();
         ledger.none_of(&format!("{threads} threads"), "threads where 2⁻¹⁴⁰ · 0.5 is lost", lost, threads);
     }
