@@ -20,7 +20,7 @@ const ZIP: &str = "application/zip";
     get, path = "/scenes/{id}/frame.zip", tag = "frames",
     params(("id" = String, Path, description = "The scene"), openapi::Outputs, openapi::FrameQuery),
     responses(
-        (status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String), ("Render-Settings" = String), ("Content-Location" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]
@@ -45,7 +45,7 @@ pub(super) async fn read(
     params(("id" = String, Path, description = "The scene"), openapi::Outputs, openapi::FrameQuery),
     request_body(content((serde_json::Value = "application/merge-patch+json"), (serde_json::Value = "application/json"))),
     responses(
-        (status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The archive", body = Vec<u8>, content_type = "application/zip", headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String), ("Render-Settings" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]

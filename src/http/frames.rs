@@ -28,7 +28,7 @@ const NO_CACHE: (HeaderName, HeaderValue) = (CACHE_CONTROL, HeaderValue::from_st
     get, path = "/scenes/{id}/frame.{format}", tag = "frames",
     params(("id" = String, Path, description = "The scene"), openapi::FrameQuery),
     responses(
-        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String), ("Render-Settings" = String), ("Content-Location" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]
@@ -53,7 +53,7 @@ pub(super) async fn read(
     params(("id" = String, Path, description = "The scene"), openapi::FrameQuery),
     request_body(content((serde_json::Value = "application/merge-patch+json"), (serde_json::Value = "application/json"))),
     responses(
-        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String), ("Render-Settings" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]
@@ -141,11 +141,10 @@ pub(super) fn add_settings(response: &mut Response, choice: &Choice, pairs: &Pai
         ("ms", format!("{:.3}", choice.ms)),
         ("source", choice.source.word().to_owned()),
     ];
-    // A dictionary of numbers and tokens (RFC 8941, section 3.2).
     let settings = listed(parameters.iter().chain(&expected).map(|(name, value)| format!("{name}={value}")));
-    let values = [(RENDER_SETTINGS, settings), (CONTENT_LOCATION, pairs.with_settings(&parameters))];
+    let values = [(RENDER_SETTINGS, Some(settings)), (CONTENT_LOCATION, pairs.location(&parameters))];
     for (name, value) in values {
-        if let Ok(value) = HeaderValue::from_str(&value) {
+        if let Some(Ok(value)) = value.as_deref().map(HeaderValue::from_str) {
             response.headers_mut().insert(name, value);
         }
     }

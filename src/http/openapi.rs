@@ -1,5 +1,6 @@
 //! `/openapi.json`: OpenAPI 3.1 from the handlers' own annotations.
 
+mod headers;
 mod pictures;
 mod schemas;
 
@@ -243,6 +244,7 @@ fn described(api: OpenApi) -> Value {
     for (path, item) in paths {
         for (method, operation) in item.as_object_mut().into_iter().flatten() {
             operation["operationId"] = json!(operation_id(path, method));
+            headers::describe(operation);
             add_errors(path, method, operation);
         }
     }
@@ -258,9 +260,10 @@ fn operation_id(path: &str, method: &str) -> String {
 /// Every status that the call's shape lets it answer, beside those it names itself.
 fn add_errors(path: &str, method: &str, operation: &mut Value) {
     let has_body = operation.get("requestBody").is_some();
-    let sends_picture =
-        ["/frame.", "/turntable.", "/render.", "/stream.", "/events"].iter().any(|stem| path.contains(stem));
-    let draws = sends_picture || path.ends_with("/pick") || path.ends_with("/plan");
+    let has_format = ["/frame.", "/turntable.", "/render.", "/stream.", "/events", "/report."]
+        .iter()
+        .any(|stem| path.contains(stem));
+    let draws = has_format || path.ends_with("/pick") || path.ends_with("/plan");
     let changes = method != "get";
     let conditional = changes && path.contains("{id}") && !draws;
     let of = |applies: bool, statuses: &'static [u16]| if applies { statuses } else { &[] };
@@ -272,7 +275,7 @@ fn add_errors(path: &str, method: &str, operation: &mut Value) {
         of(has_body, &[400, 408, 413, 415, 422]),
         of(has_body && !draws, &[507]),
         of(conditional, &[412]),
-        of(sends_picture, &[406]),
+        of(has_format, &[406]),
         of(draws, &[413, 503, 504]),
         of(path == "/readyz", &[503]),
     ];

@@ -170,7 +170,7 @@ impl From<JobError> for Problem {
             JobError::Plan(error) => error.into(),
             JobError::Unfit(Unfit::Values { .. }) => Self::new(StatusCode::NOT_ACCEPTABLE, detail),
             JobError::Unfit(Unfit::Data { .. }) => Self::query(&[QueryFault::new("output", detail)]),
-            JobError::Full(_) | JobError::Closing | JobError::Cancelled => {
+            JobError::Full(_) | JobError::FullOfReports(_) | JobError::Closing | JobError::Cancelled => {
                 Self::new(StatusCode::SERVICE_UNAVAILABLE, detail)
             }
             JobError::Deadline(_) => Self::new(StatusCode::GATEWAY_TIMEOUT, detail),
@@ -244,8 +244,10 @@ mod tests {
 
     #[test]
     fn a_full_queue_says_when_to_come_back() {
-        let response = Problem::from(JobError::Full(3)).into_response();
-        assert_eq!(response.status(), 503);
-        assert_eq!(response.headers()[RETRY_AFTER], "1");
+        for error in [JobError::Full(3), JobError::FullOfReports(3)] {
+            let response = Problem::from(error).into_response();
+            assert_eq!(response.status(), 503);
+            assert_eq!(response.headers()[RETRY_AFTER], "1");
+        }
     }
 }

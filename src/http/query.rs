@@ -6,11 +6,13 @@ use crate::plan::request::{Budget, Query};
 use crate::scene::gallery::{self, Piece};
 use crate::scene::{ModelOptions, UpAxis};
 use axum::extract::FromRequestParts;
+use axum::http::Method;
 use axum::http::request::Parts;
 
-/// The decoded pairs of the query string, and the path in front of it.
+/// The decoded pairs of the query string, and the method and the path in front of it.
 #[derive(Debug)]
 pub(super) struct Pairs {
+    method: Method,
     path: String,
     pairs: Vec<(String, String)>,
 }
@@ -24,8 +26,12 @@ impl Pairs {
         Ok(value)
     }
 
-    /// The same call with settings in place of a budget: path and query.
-    pub(super) fn with_settings(&self, settings: &[(&'static str, String)]) -> String {
+    /// Where a GET finds the same with settings in place of a budget: path and query. What a body has a part in is
+    /// found nowhere, and to name a place would be to say that it is (RFC 9110, section 8.7).
+    pub(super) fn location(&self, settings: &[(&'static str, String)]) -> Option<String> {
+        if ![Method::GET, Method::HEAD].contains(&self.method) {
+            return None;
+        }
         let is_own = |name: &str| {
             !Budget::PARAMETERS.contains(&name) && !settings.iter().any(|(setting, _)| *setting == name)
         };
@@ -34,7 +40,7 @@ impl Pairs {
         let settings = settings.iter().map(|(name, value)| (*name, value.as_str()));
         let query =
             form_urlencoded::Serializer::new(String::new()).extend_pairs(own.chain(settings)).finish();
-        format!("{}?{query}", self.path)
+        Some(format!("{}?{query}", self.path))
     }
 
     /// The frame query and nothing else.
@@ -48,7 +54,11 @@ impl<S: Sync> FromRequestParts<S> for Pairs {
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
         axum::extract::Query::try_from_uri(&parts.uri)
-            .map(|axum::extract::Query(pairs)| Self { path: parts.uri.path().to_owned(), pairs })
+            .map(|axum::extract::Query(pairs)| Self {
+                method: parts.method.clone(),
+                path: parts.uri.path().to_owned(),
+                pairs,
+            })
             .map_err(|_| Problem::bad_request("the query string does not decode"))
     }
 }

@@ -17,7 +17,7 @@ use std::sync::Arc;
     params(openapi::SourceQuery, openapi::FrameQuery),
     request_body(content((serde_json::Value = "application/json"), (String = "multipart/form-data"), (String = "model/obj"), (String = "text/plain"), (String = "application/octet-stream"), (String = "application/x-www-form-urlencoded"))),
     responses(
-        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String), ("Render-Settings" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]

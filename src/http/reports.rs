@@ -12,13 +12,13 @@ use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 
 /// A kind of file that a report comes as.
-struct Format {
-    extension: &'static str,
-    content_type: &'static str,
+pub(super) struct Format {
+    pub(super) extension: &'static str,
+    pub(super) content_type: &'static str,
     write: fn(&Report) -> String,
 }
 
-const FORMATS: [Format; 3] = [
+pub(super) const FORMATS: [Format; 3] = [
     Format { extension: "json", content_type: "application/json", write: Report::json },
     Format { extension: "svg", content_type: "image/svg+xml", write: plot::svg },
     Format { extension: "html", content_type: "text/html; charset=utf-8", write: html::page },
@@ -28,8 +28,9 @@ const FORMATS: [Format; 3] = [
 ///
 /// The frame that the query asks for is drawn at many settings, in a size of its own (320 pixels wide unless `width`
 /// says otherwise), each compared with a reference in 64-bit floats and timed against the others. One report is made
-/// at a time; who asks for the same joins it. How far it is, `events` tells. What it measures decides from then on
-/// what `preset`, `max_ms` and `max_error` choose for this scene.
+/// at a time; who asks for the same joins it, a few others wait. How far it is, `events` tells. What it measures decides
+/// from then on what `preset`, `max_ms` and `max_error` choose for this scene with the same `shading`, `background`,
+/// `output` and `elide`, from any camera and at any size.
 #[utoipa::path(
     get, path = "/scenes/{id}/report.{format}", tag = "reports",
     params(("id" = String, Path, description = "The scene"), openapi::ReportQuery, openapi::FrameQuery),

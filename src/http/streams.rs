@@ -10,7 +10,6 @@ use super::{App, accept, frames, openapi};
 use crate::jobs::{JobError, News, Picture, StreamRequest, Watcher};
 use crate::plan::request::Query;
 use crate::report::Progress;
-use crate::report::choose::Choice;
 use axum::Extension;
 use axum::body::{Body, Bytes};
 use axum::extract::{Path, State};
@@ -39,11 +38,12 @@ const NO_STORE: (HeaderName, HeaderValue) = (CACHE_CONTROL, HeaderValue::from_st
 /// The first picture is the scene as it is now; another follows when the scene changes or moves, at most
 /// `fps` a second, and an unchanged one after a second. Who reads slowly misses pictures, and never sees old
 /// ones. Each holds its number, the scene's revision and its time in a JPEG comment:
-/// `rasterd frame=7 revision=2 t=12.5`. Removing the scene ends the stream.
+/// `rasterd frame=7 revision=2 t=12.5`. A budget is settled anew when the scene changes and when a report has
+/// measured; `Render-Settings` is that of the first picture. Removing the scene ends the stream.
 #[utoipa::path(
     get, path = "/scenes/{id}/stream.mjpg", tag = "streams",
     params(("id" = String, Path, description = "The scene"), openapi::StreamQuery, openapi::FramingQuery, openapi::FrameQuery),
-    responses((status = 200, description = "Pictures without end", content_type = "multipart/x-mixed-replace", body = Vec<u8>)),
+    responses((status = 200, description = "Pictures without end", content_type = "multipart/x-mixed-replace", body = Vec<u8>, headers(("Render-Settings" = String), ("Content-Location" = String)))),
 )]
 pub(super) async fn watch(
     State(app): State<App>,
@@ -58,10 +58,9 @@ pub(super) async fn watch(
     }
     let (framing, request) = pairs.read(|query| (Framing::read(query), StreamRequest::read(query)))?;
     let framing = framing.unwrap_or(if names_images { Framing::Advance } else { Framing::Length });
-
-    let (request, choice) = to_budget(&app, &id, request).await?;
     let versions = app.store.watch(&id).ok_or_else(|| Problem::no_scene(&id))?;
     let (watcher, first) = begin(&app, &id, app.streams.watch(versions, request)).await?;
+    let choice = first.choice;
     let mut before = None;
     let mut send = move |watcher: &Watcher, picture: &Picture| {
         watcher.count_sent(picture, before);
@@ -99,7 +98,7 @@ pub(super) async fn events(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     accept::check(&headers, EVENT_STREAM)?;
-    let (request, _) = to_budget(&app, &id, pairs.read(StreamRequest::read)?).await?;
+    let request = pairs.read(StreamRequest::read)?;
     let versions = app.store.watch(&id).ok_or_else(|| Problem::no_scene(&id))?;
     let (watcher, first) = begin(&app, &id, app.streams.listen(versions, request)).await?;
     let opening = vec![frame_event(&watcher, &first)];
@@ -114,17 +113,6 @@ pub(super) async fn events(
         Word::Report(_) => Vec::new(),
     };
     Ok(reply(EVENT_STREAM, body(watcher, link, opening, Some(app.reports.news()), say)))
-}
-
-/// The stream with the settings that its budget buys for the scene as it is now.
-async fn to_budget(
-    app: &App,
-    id: &str,
-    request: StreamRequest,
-) -> Result<(StreamRequest, Option<Choice>), Problem> {
-    let scene = app.entry(id)?.scene;
-    let (frame, choice) = app.renderer.to_budget(&scene, request.frame().clone()).await?;
-    Ok((request.with_frame(frame), choice))
 }
 
 /// How far the report under way is, with the name of its scene.

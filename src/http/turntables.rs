@@ -20,7 +20,7 @@ use axum::response::Response;
     get, path = "/scenes/{id}/turntable.{format}", tag = "frames",
     params(("id" = String, Path, description = "The scene"), openapi::Turn, openapi::FrameQuery),
     responses(
-        (status = 200, description = "The moving picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String))),
+        (status = 200, description = "The moving picture", body = Vec<u8>, headers(("ETag" = String), ("Server-Timing" = String), ("Render-Stats" = String), ("Render-Depth-Range" = String), ("Render-Settings" = String), ("Content-Location" = String))),
         (status = 304, description = "If-None-Match names it; nothing was drawn"),
     ),
 )]

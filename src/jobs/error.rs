@@ -17,6 +17,9 @@ pub enum JobError {
     /// As many jobs wait as may.
     #[error("the render queue is full ({0} frames wait)")]
     Full(usize),
+    /// As many reports wait as may.
+    #[error("too many reports are asked for ({0} wait)")]
+    FullOfReports(usize),
     /// No job is taken any more.
     #[error("the server is going down")]
     Closing,

@@ -10,6 +10,7 @@ mod broadcast;
 mod cancel;
 mod draw;
 mod error;
+mod fronts;
 mod product;
 mod queue;
 mod report;
@@ -36,8 +37,8 @@ use crate::settings::{Machine, Settings, Simd};
 use bytes::Bytes;
 use draw::Drawn;
 use fearless_simd::Level;
+use fronts::Fronts;
 use queue::Kind;
-use report::Fronts;
 use shift::{Clock, Shift};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -218,10 +219,10 @@ impl Renderer {
     /// stream shows next is settled as late as can be. A place in the queue is waited for.
     async fn draw_live<T: Send + 'static>(
         &self,
-        settle: impl FnOnce() -> (Arc<Scene>, FrameRequest, T) + Send + 'static,
+        settle: impl FnOnce() -> Result<(Arc<Scene>, FrameRequest, T), JobError> + Send + 'static,
     ) -> Result<(Drawn, T), JobError> {
         self.run(Kind::Stream, move |engine, cancel, shift| {
-            let (scene, request, purpose) = settle();
+            let (scene, request, purpose) = settle()?;
             let format = LIVE_FORMAT.with_quality(request.quality);
             let mut drawn = draw::draw_one(engine, &scene, &request, format, engine.work(cancel))?;
             drawn.timings.insert(0, ("queue", draw::milliseconds(shift.waited())));
@@ -296,7 +297,9 @@ impl Renderer {
 
     fn count_rejected(&self, error: &JobError) {
         match error {
-            JobError::Full(_) => self.metrics().jobs_rejected(Rejection::Full).inc(),
+            JobError::Full(_) | JobError::FullOfReports(_) => {
+                self.metrics().jobs_rejected(Rejection::Full).inc()
+            }
             JobError::Closing => self.metrics().jobs_rejected(Rejection::Closing).inc(),
             _ => {}
         }
@@ -320,8 +323,12 @@ impl Engine {
     }
 
     fn plan(&self, scene: &Arc<Scene>, request: &FrameRequest) -> Result<Plan, PlanError> {
-        let elide = request.elide.unwrap_or(self.elide);
-        Plan::new(scene, &FrameRequest { elide: Some(elide), ..request.clone() }, &self.limits)
+        Plan::new(scene, &self.with_elisions(request), &self.limits)
+    }
+
+    /// `request`, which spares what the program was started to spare if it says nothing of that itself.
+    fn with_elisions(&self, request: &FrameRequest) -> FrameRequest {
+        FrameRequest { elide: Some(request.elide.unwrap_or(self.elide)), ..request.clone() }
     }
 
     fn work<'a>(&'a self, cancel: &'a AtomicBool) -> Work<'a> {

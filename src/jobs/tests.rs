@@ -7,9 +7,9 @@ use std::sync::mpsc;
 use std::thread::sleep;
 
 const TICK: Duration = Duration::from_millis(5);
-const PATIENCE: Duration = Duration::from_secs(10);
+pub(super) const PATIENCE: Duration = Duration::from_secs(10);
 
-fn scene() -> Arc<Scene> {
+pub(super) fn scene() -> Arc<Scene> {
     let new = NewScene {
         document: Some(serde_json::json!({})),
         files: None,
@@ -19,7 +19,7 @@ fn scene() -> Arc<Scene> {
 }
 
 /// Two slots' worth of settings in one: one frame runs, `queue` wait.
-fn settings(queue: u16, deadline: Duration) -> Settings {
+pub(super) fn settings(queue: u16, deadline: Duration) -> Settings {
     let machine = Machine { threads: Some(std::num::NonZeroUsize::MIN), ..Machine::default() };
     Settings {
         renders: std::num::NonZeroUsize::MIN,
@@ -30,7 +30,7 @@ fn settings(queue: u16, deadline: Duration) -> Settings {
     }
 }
 
-fn renderer(settings: &Settings, draw: Box<Draw>) -> Renderer {
+pub(super) fn renderer(settings: &Settings, draw: Box<Draw>) -> Renderer {
     Renderer::with_draw(settings, draw).expect("a pool")
 }
 
@@ -47,7 +47,7 @@ fn endless(ended: mpsc::Sender<()>) -> Box<Draw> {
 }
 
 /// One black pixel.
-fn frame() -> Frame {
+pub(super) fn frame() -> Frame {
     Frame {
         width: 1,
         height: 1,
@@ -62,7 +62,7 @@ async fn ask(renderer: &Renderer) -> Result<Rendered, JobError> {
     renderer.render(scene(), FrameRequest::default(), Format::Png).await
 }
 
-async fn until(condition: impl Fn() -> bool) {
+pub(super) async fn until(condition: impl Fn() -> bool) {
     let end = Instant::now() + PATIENCE;
     while !condition() {
         assert!(Instant::now() < end, "waited in vain");
@@ -336,4 +336,15 @@ fn what_is_built_is_built_on_as_many_threads_as_draw() {
     let settings = Settings { machine, ..Settings::default() };
     let renderer = renderer(&settings, Box::new(|_, _| Ok(vec![frame()])));
     assert_eq!(renderer.build(rayon::current_num_threads), 3);
+}
+
+#[test]
+fn what_the_program_was_started_to_spare_holds_where_a_request_says_nothing() {
+    let machine = Machine { elide: Elisions::NONE, ..Machine::default() };
+    let settings = Settings { machine, ..Settings::default() };
+    let renderer = renderer(&settings, Box::new(|_, _| Ok(vec![frame()])));
+    let spared =
+        |elide| renderer.engine.with_elisions(&FrameRequest { elide, ..FrameRequest::default() }).elide;
+    assert_eq!(spared(None), Some(Elisions::NONE));
+    assert_eq!(spared(Some(Elisions::ALL)), Some(Elisions::ALL));
 }

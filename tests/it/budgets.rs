@@ -1,7 +1,8 @@
 //! A picture to a budget: `preset`, `max_ms`, `max_error`.
 
-use crate::client::{Client, Reply};
-use axum::http::Method;
+use crate::client::{Client, PATIENCE, Reply};
+use axum::body::Body;
+use axum::http::{Method, Response};
 use serde_json::{Value, json};
 
 /// A textured floor with a ball and the shadow of a sun.
@@ -65,6 +66,22 @@ async fn a_budget_is_settled_into_an_explicit_query_with_the_same_bytes() {
         assert!(number(&reply, "error") > 0.0 && number(&reply, "ms") > 0.0);
         let again = client.get_with(location, &[("if-none-match", reply.header("etag"))]).await;
         assert_eq!(again.status, 304);
+    }
+}
+
+#[tokio::test]
+async fn what_a_body_has_a_part_in_has_no_place_of_its_own() {
+    let client = client().await;
+    let head = client.call(Method::HEAD, "/scenes/b/frame.png?preset=draft", "", &[], "").await;
+    assert!(head.header("content-location").starts_with("/scenes/b/frame.png?samples="));
+    for (path, body) in [
+        ("/scenes/b/frame.png?preset=draft", json!({ "render": { "shading": "unlit" } })),
+        ("/scenes/b/frame.zip?preset=draft", json!({})),
+        ("/render.png?preset=draft", ball()),
+    ] {
+        let reply = client.json(Method::POST, path, &body).await;
+        assert_eq!((reply.status.as_u16(), setting(&reply, "samples")), (200, "1".to_owned()), "{path}");
+        assert!(reply.headers.get("content-location").is_none(), "{path}: {:?}", reply.headers);
     }
 }
 
@@ -137,4 +154,43 @@ async fn a_budget_that_makes_no_sense_is_refused() {
         let problem = client.get(&format!("/scenes/b/frame.png?{query}")).await.problem(422);
         assert_eq!(problem["errors"][0]["parameter"], parameter, "{problem}");
     }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_report_decides_for_pictures_like_its_own() {
+    let client = client().await;
+    let stream = "/scenes/b/stream.mjpg?preset=draft&shading=unlit";
+    let watched = client.open(stream, &[]).await;
+    let said = |response: &Response<Body>| {
+        response.headers()["render-settings"].to_str().expect("text").rsplit('=').next().map(str::to_owned)
+    };
+    assert_eq!(said(&watched).as_deref(), Some("model"));
+
+    let query = "budget_s=10&width=48&knobs=samples&shading=unlit&orbit=10,20";
+    assert_eq!(client.get(&format!("/scenes/b/report.json?{query}")).await.status, 200);
+    for (query, source) in [
+        ("shading=unlit&orbit=10,20", "measured"),
+        // The same seen from elsewhere, in another size, at another time.
+        ("shading=unlit", "measured"),
+        ("shading=unlit&orbit=40,10&width=32&t=3", "measured"),
+        // Others.
+        ("orbit=10,20", "model"),
+        ("shading=lambert", "model"),
+        ("shading=unlit&background=ff8800", "model"),
+        ("shading=unlit&elide=none", "model"),
+    ] {
+        let reply = client.get(&format!("/scenes/b/frame.png?max_error=0.003&{query}")).await;
+        assert_eq!(setting(&reply, "source"), source, "{query}");
+    }
+
+    // Who watched before watches the same as who comes now, by what is measured.
+    let measured = async {
+        while said(&client.open(stream, &[]).await).as_deref() != Some("measured") {
+            tokio::time::sleep(std::time::Duration::from_millis(20)).await;
+        }
+    };
+    tokio::time::timeout(PATIENCE, measured).await.expect("the stream is settled anew");
+    let _joined = client.open(stream, &[]).await;
+    assert_eq!(client.app.streams.count(), 1);
+    drop(watched);
 }

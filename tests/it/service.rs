@@ -83,6 +83,9 @@ async fn the_description_has_every_route_with_its_statuses() {
         ("/scenes/{id}/frame.webp", "get post"),
         ("/scenes/{id}/frame.zip", "get post"),
         ("/scenes/{id}/pick", "get"),
+        ("/scenes/{id}/report.html", "get"),
+        ("/scenes/{id}/report.json", "get"),
+        ("/scenes/{id}/report.svg", "get"),
         ("/scenes/{id}/stream.mjpg", "get"),
         ("/scenes/{id}/turntable.gif", "get"),
         ("/scenes/{id}/turntable.png", "get"),
@@ -102,6 +105,12 @@ async fn the_description_has_every_route_with_its_statuses() {
             assert!(responses[status].is_object(), "{picture}: {status}");
         }
     }
+    for report in ["report.json", "report.svg", "report.html"] {
+        let responses = &api["paths"][format!("/scenes/{{id}}/{report}")]["get"]["responses"];
+        for status in ["200", "404", "406", "413", "422", "503", "504"] {
+            assert!(responses[status].is_object(), "{report}: {status}");
+        }
+    }
     for stream in ["stream.mjpg", "events"] {
         let operation = &api["paths"][format!("/scenes/{{id}}/{stream}")]["get"];
         for status in ["200", "404", "406", "413", "422", "503", "504"] {
@@ -112,6 +121,28 @@ async fn the_description_has_every_route_with_its_statuses() {
         assert!(output["schema"]["enum"].as_array().expect("words").contains(&"shaded".into()), "{stream}");
     }
     assert!(!api.to_string().contains("{format}"));
+    assert!(api["paths"]["/scenes/{id}/report.png"].is_null(), "a report is no picture");
+}
+
+#[tokio::test]
+async fn the_description_says_what_a_budget_adds_to_replies() {
+    let api = Client::new().get("/openapi.json").await.json();
+    let header = |method: &str, path: &str, name: &str| {
+        api["paths"][path][method]["responses"]["200"]["headers"][name]["description"].is_string()
+    };
+    for picture in ["frame.png", "frame.exr", "frame.zip", "turntable.gif", "stream.mjpg"] {
+        let path = format!("/scenes/{{id}}/{picture}");
+        assert!(
+            header("get", &path, "Render-Settings") && header("get", &path, "Content-Location"),
+            "{path}"
+        );
+    }
+    for path in ["/scenes/{id}/frame.png", "/scenes/{id}/frame.zip", "/render.png"] {
+        assert!(
+            header("post", path, "Render-Settings") && !header("post", path, "Content-Location"),
+            "{path}"
+        );
+    }
 }
 
 #[tokio::test]

@@ -285,6 +285,32 @@ async fn a_patch_is_seen_with_its_revision() {
 }
 
 #[tokio::test]
+async fn a_budget_is_settled_anew_for_each_revision() {
+    let client = client(&triangle()).await;
+    let high = client.get("/scenes/t/frame.jpg?preset=high").await;
+    let ms = high.header("render-settings").split(", ").find_map(|pair| pair.strip_prefix("ms="));
+    // Enough for the best of a small picture, and not of a large one.
+    let query = format!("max_ms={}", ms.expect("milliseconds"));
+    let settled = async || {
+        let frame = client.get(&format!("/scenes/t/frame.jpg?{query}")).await;
+        let settings = frame.header("render-settings").split(", error=").next().map(str::to_owned);
+        (settings.expect("settings"), frame.body)
+    };
+    let mut live = Live::open(&client, &format!("/scenes/t/stream.mjpg?t=0&{query}")).await;
+    let (settings, single) = settled().await;
+    assert!(live.picture().await.jpeg == single, "{settings}");
+
+    patch(&client, json!({ "render": { "width": 640, "height": 480 } })).await;
+    let (others, single) = settled().await;
+    assert_ne!(others, settings);
+    let mut shown = live.picture().await;
+    while shown.revision == 1 {
+        shown = live.picture().await;
+    }
+    assert!(shown.jpeg == single, "{others}");
+}
+
+#[tokio::test]
 async fn many_watchers_cost_as_much_as_one() {
     let client = client(&triangle()).await;
     let mut watchers = Vec::new();

@@ -1,6 +1,7 @@
-//! One route for pictures of every format becomes a path for each, with what holds for it alone.
+//! One route for pictures or reports of every format becomes a path for each, with what holds for it alone.
 
 use crate::encode::{Animation, Format};
+use crate::http::reports;
 use crate::plan::Output;
 use serde_json::{Map, Value, json};
 
@@ -27,11 +28,22 @@ pub(super) fn expand(paths: &mut Map<String, Value>) {
             paths.insert(path, item);
             continue;
         };
-        for kind in if path.contains("/turntable.") { animations() } else { stills() } {
+        for kind in kinds(stem) {
             let mut item = item.clone();
             operations(&mut item).for_each(|operation| kind.describe(operation));
             paths.insert(format!("{stem}{}", kind.extension), item);
         }
+    }
+}
+
+/// The formats of a path that ends before them.
+fn kinds(stem: &str) -> Vec<Kind> {
+    if stem.ends_with("/turntable.") {
+        animations()
+    } else if stem.ends_with("/report.") {
+        reports()
+    } else {
+        stills()
     }
 }
 
@@ -65,13 +77,26 @@ fn animations() -> Vec<Kind> {
     Animation::ALL.map(kind).into()
 }
 
+fn reports() -> Vec<Kind> {
+    let kind = |format: &reports::Format| Kind {
+        extension: format.extension,
+        content_type: format.content_type,
+        has_quality: false,
+        outputs: words(|_| true),
+    };
+    reports::FORMATS.iter().map(kind).collect()
+}
+
 fn words(fits: impl Fn(Output) -> bool) -> Vec<&'static str> {
     Output::all().into_iter().filter(|output| fits(*output)).map(Output::word).collect()
 }
 
 impl Kind {
     fn describe(&self, operation: &mut Value) {
-        let schema = json!({ "type": "string", "contentMediaType": self.content_type });
+        let schema = match self.content_type {
+            "application/json" => json!({ "type": "object" }),
+            other => json!({ "type": "string", "contentMediaType": other }),
+        };
         operation["responses"]["200"]["content"] = json!({ self.content_type: { "schema": schema } });
         retain_parameters(operation, |name| self.has_quality || name != "quality");
         narrow_outputs(operation, &self.outputs);

@@ -3,6 +3,8 @@
 use super::{Broadcast, News, Picture};
 use crate::jobs::draw::Drawn;
 use crate::jobs::{Encoded, JobError, Renderer};
+use crate::plan::FrameRequest;
+use crate::report::choose::Choice;
 use crate::scene::Entry;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -51,6 +53,9 @@ struct Moment {
     t: f64,
     /// Whether the next moment looks different.
     moves: bool,
+    /// What the budget was settled into, if there is one, and how many fronts were measured by then.
+    choice: Option<Choice>,
+    fronts: u64,
 }
 
 /// A drawn frame on its way to the encoder.
@@ -84,16 +89,21 @@ impl Caster {
     async fn draw(&self, takes: mpsc::Sender<Take>) {
         let mut pace = ticks(self.broadcast.request.period());
         let mut failures = 0;
+        let mut last = None;
         while let Ok(place) = takes.reserve().await {
             pace.tick().await;
             let before = self.versions.borrow().revision;
-            match self.draw_now().await {
+            match self.draw_now(last).await {
                 Ok(take) => {
                     failures = 0;
                     let moment = take.1;
+                    last = Some(moment);
                     place.send(take);
                     if !moment.moves {
-                        self.another_than(moment.revision).await;
+                        tokio::select! {
+                            () = self.another_than(moment.revision) => {}
+                            () = self.measured_since(moment) => {}
+                        }
                     }
                 }
                 Err(JobError::Closing) => return,
@@ -108,18 +118,25 @@ impl Caster {
         }
     }
 
-    /// The scene as it is when its turn comes.
-    async fn draw_now(&self) -> Result<Take, JobError> {
-        let (versions, clock) = (self.versions.clone(), self.clock);
+    /// The scene as it is when its turn comes. A budget's settings stay those of the `last` frame until the scene
+    /// is another or something was measured: no picture flickers because its time has changed.
+    async fn draw_now(&self, last: Option<Moment>) -> Result<Take, JobError> {
+        let (versions, clock, renderer) = (self.versions.clone(), self.clock, self.renderer.clone());
         let request = self.broadcast.request.clone();
         let settle = move || {
             let (scene, revision) = {
                 let entry = versions.borrow();
                 (Arc::clone(&entry.scene), entry.revision)
             };
+            let fronts = *renderer.fronts_measured().borrow();
             let frame = request.at(clock.seconds());
-            let moment = Moment { revision, t: frame.t, moves: request.runs() && scene.moves() };
-            (scene, frame, moment)
+            let (t, moves) = (frame.t, request.runs() && scene.moves());
+            let holds = |last: &Moment| last.revision == revision && last.fronts == fronts;
+            let (frame, choice) = match last.filter(holds).and_then(|last| last.choice) {
+                Some(choice) => (settled(&frame, &choice), Some(choice)),
+                None => renderer.to_budget_now(&scene, frame)?,
+            };
+            Ok((scene, frame, Moment { revision, t, moves, choice, fronts }))
         };
         self.renderer.draw_live(settle).await
     }
@@ -127,12 +144,12 @@ impl Caster {
     /// Encodes what comes and shows it to all.
     async fn encode(&self, mut takes: mpsc::Receiver<Take>) {
         let mut number = 0;
-        while let Some((drawn, Moment { revision, t, .. })) = takes.recv().await {
+        while let Some((drawn, Moment { revision, t, choice, .. })) = takes.recv().await {
             number += 1;
             let comment = format!("rasterd frame={number} revision={revision} t={t}");
             match self.renderer.encode_live(drawn, self.broadcast.request.quality(), comment).await {
                 Ok(Encoded { jpeg, size, timings, stats, tally }) => {
-                    let picture = Picture { number, revision, t, jpeg, size, timings, stats, tally };
+                    let picture = Picture { number, revision, t, jpeg, size, timings, stats, tally, choice };
                     self.broadcast.pace().push_back(Instant::now());
                     self.news.send_replace(News { picture: Some(Arc::new(picture)), failure: None });
                 }
@@ -149,10 +166,23 @@ impl Caster {
         }
     }
 
+    /// Waits until a report has measured what the budget of `moment` was settled without; for ever, if it has none.
+    async fn measured_since(&self, moment: Moment) {
+        let mut fronts = self.renderer.fronts_measured();
+        if moment.choice.is_none() || fronts.wait_for(|count| *count != moment.fronts).await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    }
+
     fn tell(&self, failure: JobError) {
         tracing::warn!(error = %failure, "a frame of a stream failed");
         self.news.send_modify(|news| news.failure = Some(failure));
     }
+}
+
+/// `frame` with the settings of `choice` in place of its budget.
+fn settled(frame: &FrameRequest, choice: &Choice) -> FrameRequest {
+    FrameRequest { budget: None, ..choice.setting.of_request(frame) }
 }
 
 /// Ends when the scene is not there any more.

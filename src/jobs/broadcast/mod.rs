@@ -15,6 +15,7 @@ pub use request::StreamRequest;
 
 use super::{JobError, Renderer};
 use crate::plan::Tally;
+use crate::report::choose::Choice;
 use crate::scene::Entry;
 use bytes::Bytes;
 use caster::Caster;
@@ -97,6 +98,8 @@ pub struct Picture {
     pub stats: Vec<(&'static str, u64)>,
     /// What was done, and what elisions spared.
     pub tally: Tally,
+    /// What the stream's budget was settled into, if it has one.
+    pub choice: Option<Choice>,
 }
 
 impl Streams {

@@ -15,7 +15,7 @@ const DEFAULT_FPS: f64 = 30.0;
 /// What a client wants to watch. Equal ones see the same pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreamRequest {
-    /// Each frame, but for its time; the quality is settled.
+    /// Each frame, but for its time; the quality is settled, a budget is not: what it buys changes with the scene.
     frame: FrameRequest,
     /// Whether the query holds the time.
     is_frozen: bool,
@@ -31,18 +31,6 @@ impl StreamRequest {
         let mut frame = FrameRequest::read(query);
         frame.quality = Some(frame.quality.unwrap_or(Format::DEFAULT_QUALITY));
         Self { frame, is_frozen, fps }
-    }
-
-    /// What each frame asks for, but for its time.
-    #[must_use]
-    pub fn frame(&self) -> &FrameRequest {
-        &self.frame
-    }
-
-    /// The same stream of frames that ask for `frame`.
-    #[must_use]
-    pub fn with_frame(self, frame: FrameRequest) -> Self {
-        Self { frame, ..self }
     }
 
     /// From the start of one frame to that of the next, at least.
@@ -83,6 +71,8 @@ mod tests {
         assert_eq!(read(&[]), read(&[("quality", "80"), ("fps", "30")]));
         assert_ne!(read(&[]), read(&[("t", "0")]));
         assert_ne!(read(&[]), read(&[("fps", "10")]));
+        assert_eq!(read(&[("max_ms", "5")]), read(&[("max_ms", "5.0")]));
+        assert_ne!(read(&[]), read(&[("max_ms", "5")]));
     }
 
     #[test]
