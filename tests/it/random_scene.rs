@@ -2,12 +2,15 @@
 
 use crate::draw::{png, scene_with};
 use crate::random::Random;
-use rasterd::plan::FrameRequest;
+use rasterd::model::Filter;
+use rasterd::plan::{FrameRequest, Knobs};
 use rasterd::scene::{Files, Scene};
 use serde_json::{Map, Value, json};
+use std::collections::HashSet;
+use std::mem::discriminant;
 use std::sync::{Arc, LazyLock};
 
-/// The pictures that textures are made of.
+/// The pictures that textures and cube maps are made of.
 static FILES: LazyLock<Files> = LazyLock::new(|| {
     let byte = |x: u32, y: u32| u8::try_from((x * x * 7 + y * 13 + x * y) % 256).expect("a byte");
     let mut files = Files::default();
@@ -16,6 +19,7 @@ static FILES: LazyLock<Files> = LazyLock::new(|| {
         ("holes.png", png(6, 6, |x, y| [200, byte(x, y), 90, if (x + y) % 3 == 0 { 0 } else { byte(x, y) }])),
         ("dot.png", png(1, 1, |_, _| [200, 120, 40, 255])),
         ("flat.png", png(4, 4, |_, _| [128, 128, 255, 255])),
+        ("side.png", png(8, 8, |x, y| [byte(x, y), byte(y, 5), 255 - byte(x, 2), 255])),
         ("bumps.png", png(8, 8, |x, y| [100 + byte(x, y) / 8, 110 + byte(y, x) / 8, 230, 255])),
     ] {
         files.insert(name, bytes.into()).expect("a sound name");
@@ -35,7 +39,7 @@ pub fn random_scene(seed: u64) -> RandomScene {
     let mut lot = Lot(Random(seed));
     let document = lot.document();
     let scene = scene_with(&document, &FILES);
-    let request = FrameRequest { t: lot.0.between(0.0, 3.0), ..FrameRequest::default() };
+    let request = lot.request();
     RandomScene { document, scene, request }
 }
 
@@ -51,6 +55,10 @@ impl Lot {
         all[self.0.below(all.len())].clone()
     }
 
+    fn one_of_in<T: Clone>(&mut self, n: usize, all: &[T]) -> Option<T> {
+        self.one_in(n).then(|| self.pick(all))
+    }
+
     fn vector(&mut self, reach: f64) -> Value {
         json!([(); 3].map(|()| self.0.between(-reach, reach)))
     }
@@ -62,6 +70,22 @@ impl Lot {
     /// `count` entries with names of their own.
     fn map(&mut self, count: usize, mut entry: impl FnMut(&mut Self) -> Value) -> Map<String, Value> {
         (0..count).map(|i| (format!("n{i}"), entry(self))).collect()
+    }
+
+    fn request(&mut self) -> FrameRequest {
+        FrameRequest { t: self.0.between(0.0, 3.0), knobs: self.knobs(), ..FrameRequest::default() }
+    }
+
+    /// Most are as the scene has them.
+    fn knobs(&mut self) -> Knobs {
+        Knobs {
+            shadow_resolution: self.one_of_in(4, &[24, 100]),
+            pcf_taps: self.one_of_in(4, &[1, 5, 40]),
+            search_taps: self.one_of_in(4, &[1, 7, 30]),
+            filter_taps: self.one_of_in(4, &[1, 9, 50]),
+            texture_filter: self.one_of_in(4, &[Filter::Nearest, Filter::Bilinear, Filter::Trilinear]),
+            render_scale: self.one_of_in(5, &[0.5, 0.75, 1.5]),
+        }
     }
 
     fn document(&mut self) -> Value {
@@ -102,8 +126,20 @@ impl Lot {
             0 | 1 => json!({ "type": "transparent" }),
             2 | 3 => json!({ "type": "color", "color": self.color() }),
             4 => json!({ "type": "equirect", "file": "noise.png" }),
+            5 => self.sky(),
+            6 => json!({ "type": "cubemap", "faces": {
+                "px": "side.png", "nx": "bumps.png", "py": "side.png",
+                "ny": "bumps.png", "pz": "bumps.png", "nz": "side.png" } }),
             _ => json!({ "type": "gradient", "top": self.color(), "bottom": self.color() }),
         }
+    }
+
+    fn sky(&mut self) -> Value {
+        let mut sky = json!({ "type": "sky", "turbidity": self.0.between(1.0, 10.0) });
+        if self.one_in(2) {
+            sky["sun_direction"] = json!(self.0.direction().to_array());
+        }
+        sky
     }
 
     fn light(&mut self) -> Value {
@@ -265,4 +301,18 @@ impl Lot {
         }
         render
     }
+}
+
+/// Files that a background lacks would leave it out without a word.
+#[test]
+fn the_lot_falls_on_every_background_and_on_resampled_pictures() {
+    let mut rng = Random(0x0107);
+    let (mut backgrounds, mut resampled) = (HashSet::new(), 0);
+    for _ in 0..100 {
+        let RandomScene { scene, request, .. } = random_scene(rng.bits());
+        backgrounds.insert(discriminant(&scene.background));
+        resampled += usize::from(request.knobs.that_change(&scene).render_scale.is_some());
+    }
+    assert_eq!(backgrounds.len(), 6);
+    assert!((10..=30).contains(&resampled), "{resampled} of 100 pictures are resampled");
 }
