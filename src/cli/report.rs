@@ -68,12 +68,14 @@ impl Report {
             selftest: self.selftest,
             ..Options::default()
         };
+        let (request, _) = renderer.to_budget_now(&scene, request)?;
         let report = renderer.report_now(&scene, &request, &options, &show)?;
         clear();
         for (path, write) in self.out.iter().zip(writers) {
             std::fs::write(path, write(&report)).map_err(|error| Failure::new(path.display(), error))?;
         }
-        Ok(())
+        name_failed_laws(&report);
+        check(&report)
     }
 
     /// The frame that it is about, by the reader of the server's query.
@@ -98,8 +100,33 @@ fn writer(path: &Path) -> Result<Writer, Failure> {
     }
 }
 
+/// Says which slopes lie outside of their windows: a sign of a fault, or of details as small as a pixel.
+fn name_failed_laws(report: &Measured) {
+    for fit in report.fits.iter().filter(|fit| fit.pass == Some(false)) {
+        let [least, most] = fit.window.unwrap_or_default();
+        eprintln!(
+            "note: {} of {}: slope {:.2} ± {:.2}, expected {least} to {most}",
+            fit.metric.word(),
+            fit.knob.word(),
+            fit.slope,
+            fit.se
+        );
+    }
+}
+
+/// A report whose frames differ, or with a case that is out of its bound, is a failed check.
+fn check(report: &Measured) -> Result<(), Failure> {
+    if let Some(way) = report.determinism.differing.first() {
+        return Err(Failure::new("determinism", format_args!("another picture with {way}")));
+    }
+    match report.stability.iter().find(|row| row.is_out()) {
+        Some(row) => Err(Failure::new(row.case, format_args!("{} is out of its bound", row.metric))),
+        None => Ok(()),
+    }
+}
+
 /// Cells of the bar.
-const CELLS: usize = 30;
+const CELLS: u32 = 30;
 
 /// Shows how far the report is, on a terminal.
 fn show(progress: Progress) {
@@ -110,10 +137,12 @@ fn show(progress: Progress) {
             Stage::Errors => "measuring errors",
             Stage::Components => "fitting laws",
             Stage::Timing => "timing",
+            Stage::Ways => "drawing in other ways",
+            Stage::Stability => "running the stiff cases",
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a few cells")]
-        let full = (progress.done.clamp(0.0, 1.0) * 30.0) as usize;
-        let bar = format!("{}{}", "█".repeat(full), "░".repeat(CELLS - full));
+        let full = (progress.done.clamp(0.0, 1.0) * f64::from(CELLS)) as u32;
+        let bar: String = (0..CELLS).map(|cell| if cell < full { '█' } else { '░' }).collect();
         let _ = write!(stderr, "\r{bar} {:3.0} %  {what:<24}", progress.done * 100.0);
     }
 }

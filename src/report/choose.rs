@@ -14,7 +14,7 @@ pub struct Choice {
     pub setting: Setting,
     /// Root mean square error of linear light in 0–1.
     pub error: f64,
-    /// Milliseconds, encoding among them.
+    /// Milliseconds, from the request to the last pixel.
     pub ms: f64,
     /// What says so.
     pub source: Source,
@@ -92,15 +92,22 @@ impl Front {
         let choice = |point: &Measured| Choice {
             setting: point.setting,
             error: point.error,
-            ms: point.passes.iter().map(|(pass, ms)| ms * growth(pass)).sum(),
+            ms: point
+                .passes
+                .iter()
+                .filter(|(pass, _)| *pass != "encode")
+                .map(|(pass, ms)| ms * growth(pass))
+                .sum(),
             source: Source::Measured,
         };
         self.points.iter().map(choice).collect()
     }
 }
 
-/// The setting that `budget` gets for the frame of `request`, which `plan` draws on `threads`: by the `front` of its
-/// scene, if that is measured. What the request sets itself stays.
+/// The setting that `budget` gets for the frame of `request`, which `plan` draws on `threads`, of those that `fit` into
+/// the limits: by the `front` of its scene, if that is measured. What the request sets itself stays.
+///
+/// A preset is what it says, and on a measured front what errs no more than that and costs the least.
 #[must_use]
 pub fn choose(
     budget: Budget,
@@ -108,33 +115,45 @@ pub fn choose(
     plan: &Plan,
     front: Option<&Front>,
     threads: usize,
+    fits: &dyn Fn(&Setting) -> bool,
 ) -> Choice {
-    // What was measured was without them.
-    let front = front.filter(|front| !sets_knobs(request) && !front.points.is_empty());
-    let choices = match front {
-        Some(front) => front.choices(plan),
-        None => modelled(plan, request, threads),
+    // What was measured was without what the request sets.
+    let measured = front.filter(|_| !sets_knobs(request));
+    let measured = measured.map(|front| (front, fitting(front.choices(plan), fits)));
+    let (front, choices) = match measured.filter(|(_, choices)| !choices.is_empty()) {
+        Some((front, choices)) => (Some(front), choices),
+        None => (None, fitting(modelled(plan, request, threads), fits)),
     };
     let within = |budget: f64, of: fn(&Choice) -> f64, best: fn(&Choice) -> f64| {
-        let fits = choices.iter().filter(|choice| of(choice) <= budget);
-        // Where nothing fits, what comes nearest to it.
-        fits.min_by(|a, b| best(a).total_cmp(&best(b)))
+        let affordable = choices.iter().filter(|choice| of(choice) <= budget);
+        // Where nothing is, what comes nearest to it.
+        affordable
+            .min_by(|a, b| best(a).total_cmp(&best(b)))
             .or_else(|| choices.iter().min_by(|a, b| of(a).total_cmp(&of(b))))
             .copied()
     };
+    let by_error = |error: f64| within(error, |choice| choice.error, |choice| choice.ms);
+    let own = Setting::of(plan);
     let chosen = match budget {
         Budget::MaxMs(ms) => within(ms, |choice| choice.ms, |choice| choice.error),
-        Budget::MaxError(error) => within(error, |choice| choice.error, |choice| choice.ms),
+        Budget::MaxError(error) => by_error(error),
         Budget::Preset(preset) => {
-            let setting = kept(Setting::of_preset(preset, plan), request);
             let known = front.and_then(|front| front.presets.iter().find(|(own, _)| *own == preset));
+            let itself = cost::expected(kept(Setting::of_preset(preset, plan), request), plan, threads);
             match known {
-                Some((_, error)) => within(*error, |choice| choice.error, |choice| choice.ms),
-                None => Some(cost::expected(setting, plan, threads)),
+                Some((_, error)) => by_error(*error),
+                None if fits(&itself.setting) => Some(itself),
+                None => by_error(itself.error),
             }
         }
     };
-    chosen.expect("there is always a setting")
+    // The frame as it is can be drawn, or there were no plan of it.
+    chosen.unwrap_or_else(|| cost::expected(own, plan, threads))
+}
+
+fn fitting(mut choices: Vec<Choice>, fits: &dyn Fn(&Setting) -> bool) -> Vec<Choice> {
+    choices.retain(|choice| fits(&choice.setting));
+    choices
 }
 
 /// Settings from little work to much, and what they should cost.

@@ -26,6 +26,21 @@ const LIGHT_RAYS: u32 = 256;
 /// Samples of a pixel at an edge.
 const EDGE_SAMPLES: u32 = 256;
 
+/// How far off a pixel's truth may be before it gets more samples.
+const NOISE: f64 = 5e-4;
+
+/// Pixels that have to be off at least, or their number is chance: of 24 it is off by a fifth.
+const LEAST_WRONG: f64 = 24.0;
+
+/// How much larger than the report the picture of shadows may be along a side: few pixels lie at their borders.
+const MOST_ENLARGED: f64 = 4.0;
+
+/// Pixels of the picture of shadows.
+const MOST_PIXELS: f64 = (1 << 20) as f64;
+
+/// The part of the time that the picture of shadows may take.
+const SHADOWS: f64 = 0.3;
+
 /// The laws that the error of a frame's components should follow, in the order of `knobs`.
 fn laws(plan: &Plan, knobs: &[Knob]) -> Vec<Law> {
     let law = |knob, metric, region, window| Law { knob, metric, region, window };
@@ -64,6 +79,7 @@ struct Judge {
 }
 
 /// Fits each law of the frame that `plan` draws of `subject` for which there is enough to see, until the time is up.
+/// A sample of a reference takes `sample_seconds`.
 ///
 /// # Errors
 /// [`Failed`].
@@ -72,9 +88,10 @@ pub fn fit(
     plan: &Plan,
     knobs: &[Knob],
     until: Instant,
+    sample_seconds: f64,
     work: &Work,
 ) -> Result<Vec<Fit>, Failed> {
-    let mut judges = Judges { subject, plan, coverage: None, shadows: None };
+    let mut judges = Judges { subject, plan, until, sample_seconds, coverage: None, shadows: None };
     let mut fits = Vec::new();
     for group in laws(plan, knobs).chunk_by(|a, b| a.knob == b.knob) {
         if Instant::now() >= until {
@@ -82,8 +99,9 @@ pub fn fit(
         }
         let (errors, floor) = judges.errors(group[0].knob, work)?;
         fits.extend(group.iter().filter_map(|law| {
+            let known = errors.iter().filter(|(_, error)| error.wrong >= LEAST_WRONG);
             let points: Vec<[f64; 2]> =
-                errors.iter().map(|(number, error)| [*number, measured(error, law)]).collect();
+                known.map(|(number, error)| [*number, measured(error, law)]).collect();
             Fit::of(law, &points, floor)
         }));
     }
@@ -94,6 +112,9 @@ pub fn fit(
 struct Judges<'a> {
     subject: &'a Subject,
     plan: &'a Plan,
+    /// When their truths have to do.
+    until: Instant,
+    sample_seconds: f64,
     /// Of flat colours, by many samples.
     coverage: Option<Judge>,
     /// Of surfaces without textures, at the pixels' centres.
@@ -132,29 +153,53 @@ impl Judges<'_> {
         if self.coverage.is_none() {
             let request = FrameRequest { shading: Some(Shading::Unlit), ..self.subject.request.clone() };
             let scene = without_textures(&self.subject.scene);
-            let effort = Effort { base: 4, most: EDGE_SAMPLES, noise: 0.0, aim: Aim::Pixel };
+            let effort = Effort { base: 4, most: EDGE_SAMPLES, noise: NOISE, aim: Aim::Pixel };
             let subject = Subject { scene, request, ..self.subject.clone() };
-            self.coverage = Some(Judge::new(subject, best, effort, work)?);
+            self.coverage = Some(Judge::new(subject, best, effort, self.until, work)?);
         }
         Ok(self.coverage.as_ref().expect("made above"))
+    }
+
+    /// The frame in the largest size that there is time for.
+    fn enlarged(&self) -> FrameRequest {
+        let [width, height] = self.plan.size.map(f64::from);
+        let time = SHADOWS * self.until.saturating_duration_since(Instant::now()).as_secs_f64();
+        // Two samples of a pixel with shadows, and two without.
+        let pixels = (time / (4.0 * self.sample_seconds)).min(MOST_PIXELS);
+        let scale = (pixels / (width * height)).sqrt().clamp(1.0, MOST_ENLARGED);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a few times a picture's side"
+        )]
+        let [width, height] = [width, height].map(|side| Some((side * scale).round() as u32));
+        FrameRequest { width, height, ..self.subject.request.clone() }
     }
 
     fn shadows(&mut self, best: &Setting, work: &Work) -> Result<&Judge, Failed> {
         if self.shadows.is_none() {
             let most = if is_soft(self.plan) { LIGHT_RAYS } else { 2 };
-            let effort = Effort { base: 2, most, noise: 0.0, aim: Aim::Centre };
-            let subject = Subject { scene: without_textures(&self.subject.scene), ..self.subject.clone() };
-            let judged = Some(seen_alike(&subject, best, work)?);
-            self.shadows = Some(Judge { judged, ..Judge::new(subject, best, effort, work)? });
+            let effort = Effort { base: 2, most, noise: NOISE, aim: Aim::Centre };
+            let scene = without_textures(&self.subject.scene);
+            let subject = Subject { scene, request: self.enlarged(), ..self.subject.clone() };
+            let judged = Some(seen_alike(&subject, best, self.until, work)?);
+            self.shadows = Some(Judge { judged, ..Judge::new(subject, best, effort, self.until, work)? });
         }
         Ok(self.shadows.as_ref().expect("made above"))
     }
 }
 
 impl Judge {
-    fn new(subject: Subject, best: &Setting, effort: Effort, work: &Work) -> Result<Self, Failed> {
+    fn new(
+        subject: Subject,
+        best: &Setting,
+        effort: Effort,
+        until: Instant,
+        work: &Work,
+    ) -> Result<Self, Failed> {
         let plan = subject.plan(best)?;
-        let truth = Reference::draw(&subject::of_reference(&plan), effort, &|_| {}, work)?;
+        let seen = subject::of_reference(&plan);
+        let truth = Reference::draw_until(&seen, effort, Some(until), &|_| {}, work)?;
         Ok(Self { subject, truth, judged: None })
     }
 
@@ -167,8 +212,10 @@ impl Judge {
     ) -> Result<(Vec<(f64, Errors)>, f64), Failed> {
         let error = |setting: &Setting| -> Result<(f64, Errors), Failed> {
             let radiance = self.subject.radiance(setting, work)?;
+            let all = difference(&radiance, &self.truth.radiance, self.judged.as_deref());
             let errors = Errors {
-                all: difference(&radiance, &self.truth.radiance, self.judged.as_deref()),
+                all,
+                wrong: wrong_pixels(&all, radiance.len()),
                 edges: difference(&radiance, &self.truth.radiance, Some(&self.truth.masks.edges)),
             };
             Ok((knob.number(setting).expect("only knobs with numbers have laws"), errors))
@@ -180,11 +227,11 @@ impl Judge {
 /// Pixels whose centre shows the same, but for shadows, as a ray through it finds. Where an edge passes within the
 /// 1/512 of a pixel that corners are snapped by it may not, and whether another surface is in shadow says nothing
 /// about a shadow map.
-fn seen_alike(subject: &Subject, best: &Setting, work: &Work) -> Result<Vec<bool>, Failed> {
+fn seen_alike(subject: &Subject, best: &Setting, until: Instant, work: &Work) -> Result<Vec<bool>, Failed> {
     let one = Setting { samples: 1, ..*best };
     let subject = Subject { scene: without_shadows(&subject.scene), ..subject.clone() };
     let effort = Effort { base: 2, most: 2, noise: 0.0, aim: Aim::Centre };
-    let judge = Judge::new(subject, &one, effort, work)?;
+    let judge = Judge::new(subject, &one, effort, until, work)?;
     let radiance = judge.subject.radiance(&one, work)?;
     let is_alike = |(drawn, truth): (&[f32; 4], &[f64; 4])| {
         let drawn = premultiplied(drawn);
@@ -210,7 +257,7 @@ fn against_converged(
     let error = |setting: &Setting| -> Result<(f64, Errors), Failed> {
         let all = difference(&subject.radiance(setting, work)?, &converged, None);
         let number = Knob::PcfTaps.number(setting).expect("taps are a number");
-        Ok((number, Errors { all, edges: Difference::default() }))
+        Ok((number, Errors { all, wrong: f64::INFINITY, edges: Difference::default() }))
     };
     Ok((settings.iter().map(error).collect::<Result<_, _>>()?, 0.0))
 }
@@ -218,7 +265,15 @@ fn against_converged(
 /// What laws are about.
 struct Errors {
     all: Difference,
+    /// How many pixels are off, where they are few: at the borders of shadows.
+    wrong: f64,
     edges: Difference,
+}
+
+/// How many of `count` pixels are off, if all that are off are so by as much.
+#[expect(clippy::cast_precision_loss, reason = "pixels of a picture")]
+fn wrong_pixels(difference: &Difference, count: usize) -> f64 {
+    if difference.rmse == 0.0 { 0.0 } else { (difference.mae / difference.rmse).powi(2) * count as f64 }
 }
 
 fn measured(errors: &Errors, law: &Law) -> f64 {
@@ -243,4 +298,52 @@ fn without_textures(scene: &Scene) -> Arc<Scene> {
         })
     };
     Arc::new(Scene { materials: scene.materials.iter().map(plain).collect(), ..scene.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::Limits;
+    use crate::report::selftest::instruments::draw;
+    use crate::scene::{Files, demo};
+    use serde_json::{Value, json};
+    use std::time::Duration;
+
+    /// The fits of a scene at some knobs, none of which may lie outside of its window. Returns how many have one.
+    fn held(document: &Value, files: &Files, width: u32, knobs: &[Knob]) -> usize {
+        let request =
+            FrameRequest { width: Some(width), height: Some(width * 3 / 4), ..FrameRequest::default() };
+        let scene = draw::scene_with(document, files);
+        let plan = draw::plan(&scene, &request);
+        let subject = Subject { scene, request, limits: Limits::default() };
+        let until = Instant::now() + Duration::from_secs(600);
+        // So slow that no picture is enlarged.
+        let fits = fit(&subject, &plan, knobs, until, 1.0, &draw::work()).expect("nobody cancels");
+        for fit in &fits {
+            println!(
+                "{:?} of {:?}: {:.3} ± {:.3}, {:?}",
+                fit.metric, fit.knob, fit.slope, fit.se, fit.points
+            );
+            assert_ne!(fit.pass, Some(false), "{fit:?}");
+        }
+        fits.iter().filter(|fit| fit.pass.is_some()).count()
+    }
+
+    #[test]
+    fn the_demo_keeps_the_laws() {
+        let (document, files) = (demo::document(), demo::files());
+        assert_eq!(held(&document, &files, 320, &[Knob::Samples, Knob::RenderScale]), 3);
+        assert_eq!(held(&document, &files, 800, &[Knob::ShadowResolution]), 2);
+    }
+
+    #[test]
+    fn filtered_shadows_keep_the_laws() {
+        let document = json!({
+            "camera": { "position": [2, 1.5, 3], "target": [0, 0.3, 0] },
+            "lights": { "sun": { "type": "directional", "direction": [-0.5, -1, -0.3], "shadow": { "filter": "pcf" } } },
+            "meshes": { "floor": { "type": "plane", "size": [6, 6] }, "box": { "type": "box" } },
+            "instances": { "floor": { "mesh": "floor" }, "box": { "mesh": "box", "translation": [0, 0.5, 0], "rotation_deg": [0, 25, 0] } },
+        });
+        assert_eq!(held(&document, &Files::default(), 800, &[Knob::ShadowResolution, Knob::PcfTaps]), 3);
+    }
 }

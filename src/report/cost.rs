@@ -23,11 +23,10 @@ pub const RATES: [(&str, f64); KINDS] = [
     ("textures at drawn pixels", 12.0),
     ("passes over drawn pixels", 9.0),
     ("resampled pixels", 25.0),
-    ("encoded pixels", 14.0),
 ];
 
 /// How many kinds of work there are.
-pub const KINDS: usize = 12;
+pub const KINDS: usize = 11;
 
 /// How much of the threads' time is work.
 const PARALLEL: f64 = 0.85;
@@ -67,7 +66,6 @@ pub fn amounts(setting: &Setting, plan: &Plan) -> [f64; KINDS] {
         drawn * textures as f64,
         drawn * plan.post.passes.len() as f64,
         if setting.render_scale == 1.0 { 0.0 } else { finished },
-        finished,
     ]
 }
 

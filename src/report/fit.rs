@@ -29,6 +29,17 @@ pub enum Metric {
     Mae,
 }
 
+impl Metric {
+    /// What it is called.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Rmse => "RMSE",
+            Self::Mae => "MAE",
+        }
+    }
+}
+
 /// A measured law.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
@@ -47,7 +58,7 @@ pub struct Fit {
     /// What it should lie in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<[f64; 2]>,
-    /// Whether it does, by its standard error; absent where no law is known.
+    /// Whether it does, as far as its standard error tells; absent where no law is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pass: Option<bool>,
     /// The error that remains whatever the knob is turned to: `E = e_inf + c · knob^slope`.
@@ -80,7 +91,10 @@ impl Fit {
             slope: line.slope,
             se: line.standard_error,
             window: law.window,
-            pass: law.window.map(|[least, most]| (least..=most).contains(&line.slope)),
+            pass: law.window.map(|[least, most]| {
+                let unsure = line.standard_error;
+                (least - unsure..=most + unsure).contains(&line.slope)
+            }),
             e_inf,
             points,
         })

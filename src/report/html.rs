@@ -118,8 +118,9 @@ fn parts(page: &mut String, report: &Report) {
     };
     let _ = writeln!(
         page,
-        "<p>The default's RMSE is {:.5}; the squares of the first column have the root {:.5} and {verdict}.</p>",
-        parts.total, parts.sum
+        "<p>The default's RMSE is {:.5}; at its best everywhere it is {:.5}. With what each knob of the first \
+         column adds to that, {:.5}, the parts {verdict}.</p>",
+        parts.total, parts.best, parts.sum
     );
 }
 
@@ -150,12 +151,16 @@ fn notes(page: &mut String, report: &Report) {
             truth.mean_samples, truth.most_samples, truth.floor
         ),
         format!(
-            "The default measured as two settings: ratio {:.3}, 95 % interval {:.3} to {:.3}. Smaller differences than \
-             {:.1} % cannot be told.",
+            "The default measured as two settings: ratio {:.3}, 95 % interval {:.3} to {:.3}. {}",
             ratio.median,
             ratio.ci[0],
             ratio.ci[1],
-            100.0 * ratio.resolution()
+            match report.aa_holds {
+                Some(true) =>
+                    format!("Smaller differences than {:.1} % cannot be told.", 100.0 * ratio.resolution()),
+                Some(false) => "It should hold 1: the machine was too busy to tell times by.".to_owned(),
+                None => "There were too few rounds to tell times by.".to_owned(),
+            }
         ),
         format!("The very first frame took {:.1} ms.", report.meta.cold_ms),
         format!("FLIP: {}.", report.meta.flip),

@@ -2,109 +2,41 @@
 
 use super::component;
 use super::determinism::{self, Determinism};
-use super::error::PictureError;
+use super::error::{PictureError, Standard};
 use super::front::{self, Between, Place};
 use super::machine::Machine;
+use super::options::Options;
 use super::reference::{Aim, Effort, Reference};
+use super::schedule::{Schedule, Stage, Tell};
 use super::selftest::instruments::engine::Engine;
 use super::selftest::{self, Case, Measurement};
 use super::setting::{Knob, Setting};
 use super::statistics::median;
-use super::subject::{self, Subject};
+use super::subject::{self, Drawn, Subject};
 use super::sweep::{Candidate, Family, Sweep};
 use super::timing::{self, Sample, Timing};
 use super::{AtTime, Failed, Meta, Parts, Point, Report, Threads, Truth};
 use crate::limits::Limits;
-use crate::pipeline::{Cancelled, Pixels, Work};
+use crate::pipeline::{Cancelled, Work};
 use crate::plan::request::Preset;
 use crate::plan::{Elisions, FrameRequest, Output, Plan, PlanError};
 use crate::settings::Simd;
-use serde::Serialize;
-use std::ops::RangeInclusive;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// What a report is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Options {
-    /// What the scene is called.
-    pub name: String,
-    /// How long it may take.
-    pub budget: Duration,
-    /// What is turned; empty: every knob that the scene has.
-    pub knobs: Vec<Knob>,
-    /// Pixels in a row; the rows follow from the frame's shape.
-    pub width: u32,
-    /// Times that each setting is drawn, if the budget allows.
-    pub rounds: usize,
-    /// Whether the catalogue of stiff cases is run too, on top of the budget.
-    pub selftest: bool,
-}
+/// Parts of the time that is left when a stage begins, which it may take.
+const REFERENCE: f64 = 0.35;
+const ERRORS: f64 = 0.25;
+const PARTS: f64 = 0.1;
+const COMPONENTS: f64 = 0.35;
+const TIMING: f64 = 0.8;
+const THREADS: f64 = 0.5;
 
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            name: String::new(),
-            budget: Duration::from_secs(30),
-            knobs: Vec::new(),
-            width: 320,
-            rounds: 15,
-            selftest: false,
-        }
-    }
-}
+/// How good the reference is where the time suffices.
+const EFFORT: Effort = Effort { base: 4, most: 1024, noise: 5e-4, aim: Aim::Pixel };
 
-impl Options {
-    /// Seconds that a report may be given.
-    pub const BUDGETS: RangeInclusive<f64> = 2.0..=600.0;
-
-    /// Reads a budget in seconds.
-    ///
-    /// # Errors
-    /// What is wrong with it, for the client.
-    pub fn budget(text: &str) -> Result<Duration, String> {
-        let seconds = text.parse().ok().filter(|seconds| Self::BUDGETS.contains(seconds));
-        let (least, most) = (Self::BUDGETS.start(), Self::BUDGETS.end());
-        seconds.map(Duration::from_secs_f64).ok_or_else(|| format!("must be a number in [{least}, {most}]"))
-    }
-}
-
-/// What is being done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stage {
-    /// The reference is drawn.
-    Reference,
-    /// Settings are compared with it.
-    Errors,
-    /// Components are compared with theirs.
-    Components,
-    /// Settings are timed against each other.
-    Timing,
-}
-
-/// How far a report is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Progress {
-    /// What is being done.
-    pub stage: Stage,
-    /// The part of the whole that is done, 0–1.
-    pub done: f64,
-}
-
-/// Who is told, from any thread.
-pub type Tell<'a> = &'a (dyn Fn(Progress) + Sync);
-
-/// Parts of the budget: what each stage may be over at.
-const REFERENCE_ENDS: f64 = 0.35;
-const ERRORS_END: f64 = 0.5;
-const PARTS_END: f64 = 0.55;
-const COMPONENTS_END: f64 = 0.7;
-
-/// The part of the budget that comparing bytes may take on top of it.
-const DETERMINISM: f64 = 0.1;
-
-/// Every setting is timed at least so often, or not at all.
-const LEAST_ROUNDS: u32 = 5;
+/// Every setting but the default and its control is timed so often, or not at all; of fewer samples no interval is
+/// known.
+const LEAST_ROUNDS: usize = 5;
 
 /// Errors that times are told for, in steps of a code.
 const REACHED_CODES: [f64; 3] = [1.0, 2.0, 4.0];
@@ -119,24 +51,25 @@ const EQUAL_TIMES: [f64; 3] = [16.0, 33.0, 100.0];
 pub fn make(subject: &Subject, options: &Options, tell: Tell, work: &Work) -> Result<Report, Failed> {
     let making = Making::begin(subject, options, tell, work)?;
     let (truth, seconds) = making.draw_reference()?;
-    let (candidates, errors) = making.errors(&truth)?;
-    let parts = making.parts(&truth, &errors[0])?;
-    let until = making.end_of(COMPONENTS_END);
-    let fits = component::fit(&making.subject, &making.plan, &making.sweep.knobs, until, work)?;
-    making.tell(Stage::Components, 1.0);
-    let samples = making.time(&candidates[..errors.len()])?;
+    let standard = Standard::new(truth, &making.subject.scene);
+    let errors = making.errors(&standard)?;
+    let parts = making.parts(&standard, &errors[0].0)?;
+    let fits = making.fits(seconds / samples_of(&standard.reference))?;
+    let samples = making.time(errors.len())?;
     let threads = making.threads()?;
     let determinism = making.determinism()?;
     let stability = making.stability()?;
 
-    let measured = candidates.iter().zip(errors).zip(&samples);
+    let truth = &standard.reference;
+    let measured = making.sweep.candidates.iter().zip(errors).zip(&samples);
     let mut points: Vec<Point> = measured
         .map(|((candidate, erred), samples)| making.point(candidate, erred, samples, truth.noise))
         .collect();
     let front = mark_front(&mut points, truth.noise);
+    let aa_ratio = timing::ratio(&samples[1], &samples[0]);
     Ok(Report {
         meta: making.meta(samples[0].len()),
-        reference: told(&truth, seconds),
+        reference: told(truth, seconds),
         fits,
         left_out: making.sweep.left_out.clone(),
         unfinished: making.unfinished(&points),
@@ -147,7 +80,8 @@ pub fn make(subject: &Subject, options: &Options, tell: Tell, work: &Work) -> Re
         threads,
         determinism,
         stability,
-        aa_ratio: timing::ratio(&samples[1], &samples[0]),
+        aa_holds: (samples[0].len() >= LEAST_ROUNDS).then(|| aa_ratio.holds(1.0)),
+        aa_ratio,
         points,
     })
 }
@@ -162,14 +96,13 @@ struct Making<'a> {
     options: &'a Options,
     plan: Plan,
     sweep: Sweep,
-    tell: Tell<'a>,
+    schedule: Schedule<'a>,
     work: &'a Work<'a>,
-    began: Instant,
     cold_ms: f64,
 }
 
 /// What a setting errs by, and what it did.
-type Erred = (PictureError, Vec<(&'static str, u64)>);
+type Erred = (PictureError, Drawn);
 
 impl<'a> Making<'a> {
     fn begin(
@@ -178,116 +111,129 @@ impl<'a> Making<'a> {
         tell: Tell<'a>,
         work: &'a Work<'a>,
     ) -> Result<Self, Failed> {
-        let began = Instant::now();
+        let schedule = Schedule::new(options.budget, tell);
         let subject = in_report_size(subject, options.width)?;
         let plan = Plan::new(&subject.scene, &subject.request, &subject.limits)?;
         check_size(&plan, &subject.limits)?;
-        let sweep = Sweep::of(&plan, &options.knobs);
+        let mut sweep = Sweep::of(&plan, &options.knobs);
+        // What is too large to be drawn is nothing to choose from.
+        sweep.candidates.retain(|candidate| subject.plan(&candidate.setting).is_ok());
         let cold_ms = subject.sample(&Setting::of(&plan), work)?.total;
-        Ok(Self { subject, options, plan, sweep, tell, work, began, cold_ms })
-    }
-
-    fn tell(&self, stage: Stage, share: f64) {
-        let [from, to] = match stage {
-            Stage::Reference => [0.0, REFERENCE_ENDS],
-            Stage::Errors => [REFERENCE_ENDS, ERRORS_END],
-            Stage::Components => [ERRORS_END, COMPONENTS_END],
-            Stage::Timing => [COMPONENTS_END, 1.0],
-        };
-        (self.tell)(Progress { stage, done: from + share * (to - from) });
-    }
-
-    /// When `part` of the budget is over.
-    fn end_of(&self, part: f64) -> Instant {
-        self.began + self.options.budget.mul_f64(part)
+        Ok(Self { subject, options, plan, sweep, schedule, work, cold_ms })
     }
 
     /// The reference, as good as its part of the budget allows, and the seconds that it took.
     fn draw_reference(&self) -> Result<(Reference, f64), Failed> {
         let began = Instant::now();
+        let until = self.schedule.part_of_the_rest(REFERENCE);
+        let tell = |share: f64| self.schedule.tell(Stage::Reference, share);
         let subject = subject::of_reference(&self.plan);
-        let effort = affordable(&subject, self.options.budget.mul_f64(REFERENCE_ENDS), self.work)?;
-        let tell = |share: f64| self.tell(Stage::Reference, share);
-        let reference = Reference::draw(&subject, effort, &tell, self.work)?;
+        let reference = Reference::draw_until(&subject, EFFORT, Some(until), &tell, self.work)?;
         Ok((reference, began.elapsed().as_secs_f64()))
     }
 
-    /// The error of each candidate that can be planned, as far as the budget goes; the default and its control
-    /// always.
-    fn errors(&self, truth: &Reference) -> Result<(Vec<Candidate>, Vec<Erred>), Failed> {
-        let planned = |candidate: &&Candidate| self.subject.plan(&candidate.setting).is_ok();
-        let candidates: Vec<Candidate> = self.sweep.candidates.iter().filter(planned).cloned().collect();
+    /// The error of each candidate, in their order, as far as the time goes; the default and its control always.
+    fn errors(&self, standard: &Standard) -> Result<Vec<Erred>, Failed> {
+        let until = self.schedule.part_of_the_rest(ERRORS);
+        let candidates = &self.sweep.candidates;
         let mut errors = Vec::with_capacity(candidates.len());
-        for candidate in &candidates {
-            if errors.len() >= 2 && Instant::now() >= self.end_of(ERRORS_END) {
+        for candidate in candidates {
+            if errors.len() >= 2 && Instant::now() >= until {
                 break;
             }
-            errors.push(self.error(&candidate.setting, truth)?);
+            errors.push(self.error(&candidate.setting, standard)?);
             #[expect(clippy::cast_precision_loss, reason = "a few settings")]
-            self.tell(Stage::Errors, errors.len() as f64 / candidates.len() as f64);
+            self.schedule.tell(Stage::Errors, errors.len() as f64 / candidates.len() as f64);
         }
-        Ok((candidates, errors))
+        Ok(errors)
     }
 
-    fn error(&self, setting: &Setting, truth: &Reference) -> Result<Erred, Failed> {
-        let (radiance, frame) = self.subject.draw(setting, self.work)?;
-        let Pixels::Rgba8 { pixels, .. } = &frame.pixels else { unreachable!("colour is in bytes") };
-        // The structural similarity is summed in the pool that it finds itself in.
-        let compare = || PictureError::of(&radiance, pixels, truth, self.work.level);
-        let error = self.work.pool.install(compare);
-        Ok((error, frame.stats.entries().to_vec()))
+    fn error(&self, setting: &Setting, standard: &Standard) -> Result<Erred, Failed> {
+        let (radiance, drawn) = self.subject.draw(setting, self.work)?;
+        let error = PictureError::of(&radiance, &drawn.bytes, standard, self.work);
+        Ok((error, drawn))
     }
 
     /// What the default's error is made of.
-    fn parts(&self, truth: &Reference, default: &Erred) -> Result<Option<Parts>, Failed> {
+    fn parts(&self, standard: &Standard, default: &PictureError) -> Result<Option<Parts>, Failed> {
+        let until = self.schedule.part_of_the_rest(PARTS);
         let own = Setting::of(&self.plan);
         let best = Setting { render_scale: 1.0, ..Setting::of_preset(Preset::Reference, &self.plan) };
-        let rmse = |setting: &Setting| self.error(setting, truth).map(|(error, _)| error.clamped.rmse);
-        let (mut degrade_one, mut repair_one) = (Vec::new(), Vec::new());
+        let rmse = |setting: &Setting| self.error(setting, standard).map(|(error, _)| error.clamped.rmse);
+        let (least, mut degrade_one, mut repair_one) = (rmse(&best)?, Vec::new(), Vec::new());
         for &knob in self.sweep.knobs.iter().filter(|knob| **knob != Knob::RenderScale) {
-            if Instant::now() >= self.end_of(PARTS_END) {
+            if Instant::now() >= until {
                 return Ok(None);
             }
             degrade_one.push((knob, rmse(&knob.taken(best, own))?));
             repair_one.push((knob, rmse(&knob.taken(own, best))?));
         }
-        let total = default.0.clamped.rmse;
-        let squares: f64 = degrade_one.iter().map(|(_, error)| error * error).sum();
-        let independent = (squares / (total * total) - 1.0).abs() <= 0.2;
-        Ok(Some(Parts { total, degrade_one, repair_one, sum: squares.sqrt(), independent }))
+        Ok(Some(Parts::new(default.clamped.rmse, least, degrade_one, repair_one)))
     }
 
-    /// Times as many of the candidates as the rest of the budget lets be drawn often enough. Returns the samples of
+    /// The laws of the components; a sample of a reference takes `sample_seconds`.
+    fn fits(&self, sample_seconds: f64) -> Result<Vec<super::Fit>, Failed> {
+        let until = self.schedule.part_of_the_rest(COMPONENTS);
+        let Self { subject, plan, sweep, work, .. } = self;
+        let fits = component::fit(subject, plan, &sweep.knobs, until, sample_seconds, work)?;
+        self.schedule.tell(Stage::Components, 1.0);
+        Ok(fits)
+    }
+
+    /// Times as many of the first `count` candidates as the time lets be drawn often enough. Returns the samples of
     /// each.
-    fn time(&self, candidates: &[Candidate]) -> Result<Vec<Vec<Sample>>, Failed> {
+    fn time(&self, count: usize) -> Result<Vec<Vec<Sample>>, Failed> {
+        let until = self.schedule.part_of_the_rest(TIMING);
+        let candidates = &self.sweep.candidates[..count];
         let settings: Vec<Setting> = candidates.iter().map(|candidate| candidate.setting).collect();
         timing::warm_up(&self.subject, &settings[0], self.work)?;
-        let affordable = self.affordable(&settings)?;
-        let tell = |share: f64| self.tell(Stage::Timing, share);
-        let (rounds, until) = (self.options.rounds, self.end_of(1.0));
+        let affordable = self.affordable(&settings, until)?;
+        let tell = |share: f64| self.schedule.tell(Stage::Timing, share);
+        let rounds = self.options.rounds;
         Ok(timing::interleaved(&self.subject, &settings[..affordable], rounds, until, &tell, self.work)?)
     }
 
-    /// How many of `settings` can be drawn often enough until the budget is over.
-    fn affordable(&self, settings: &[Setting]) -> Result<usize, Cancelled> {
-        let left = self.end_of(1.0).saturating_duration_since(Instant::now());
-        let mut spent = Duration::ZERO;
+    /// How many of `settings` can be drawn often enough until then.
+    fn affordable(&self, settings: &[Setting], until: Instant) -> Result<usize, Cancelled> {
+        let left = until.saturating_duration_since(Instant::now()).as_secs_f64();
+        let mut spent = 0.0;
         for (at, setting) in settings.iter().enumerate() {
             let began = Instant::now();
             self.subject.sample(setting, self.work)?;
-            spent += began.elapsed();
+            spent += began.elapsed().as_secs_f64();
             // The sample just drawn is on the account too.
-            if at >= 2 && spent * (LEAST_ROUNDS + 1) > left {
+            #[expect(clippy::cast_precision_loss, reason = "a few rounds")]
+            if at >= 2 && spent * (LEAST_ROUNDS + 1) as f64 > left {
                 return Ok(at);
             }
         }
         Ok(settings.len())
     }
 
-    /// Whether the default gives the same bytes however it is drawn, as far as a little more than the budget tells.
+    /// Milliseconds of the default with 1, 2, 4, … threads, up to those that draw, as far as the time goes.
+    fn threads(&self) -> Result<Vec<Threads>, Failed> {
+        let until = self.schedule.part_of_the_rest(THREADS);
+        let all = self.work.pool.current_num_threads();
+        let counts = std::iter::successors(Some(1), |n| Some(n * 2)).take_while(|n| *n < all).chain([all]);
+        let own = Setting::of(&self.plan);
+        let mut timed = Vec::new();
+        for threads in counts.take_while(|_| Instant::now() < until) {
+            let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { continue };
+            let work = Work { pool: &pool, ..*self.work };
+            let sample = |_| self.subject.sample(&own, &work).map(|sample| sample.total);
+            let times: Vec<f64> = (0..=LEAST_ROUNDS).map(sample).collect::<Result<_, _>>()?;
+            timed.push(Threads { threads, ms: median(&times[1..]) });
+        }
+        Ok(timed)
+    }
+
+    /// Whether the default gives the same bytes however it is drawn, as far as the budget tells.
     fn determinism(&self) -> Result<Determinism, Failed> {
-        let until = Instant::now().max(self.end_of(1.0)) + self.options.budget.mul_f64(DETERMINISM);
-        determinism::compare(&self.subject, &Setting::of(&self.plan), until, self.work)
+        self.schedule.tell(Stage::Ways, 0.5);
+        let until = self.schedule.part_of_the_rest(1.0);
+        let compared = determinism::compare(&self.subject, &Setting::of(&self.plan), until, self.work)?;
+        self.schedule.tell(Stage::Ways, 1.0);
+        Ok(compared)
     }
 
     /// The catalogue of stiff cases, if it was asked for.
@@ -295,6 +241,7 @@ impl<'a> Making<'a> {
         if !self.options.selftest {
             return Ok(Vec::new());
         }
+        self.schedule.tell(Stage::Stability, 0.0);
         let engine = Engine {
             threads: self.work.pool.current_num_threads(),
             level: self.work.level,
@@ -305,24 +252,7 @@ impl<'a> Making<'a> {
         Ok(selftest::run(&cases, selftest::Effort::Quick, &engine, self.work.cancel, &|_| {})?)
     }
 
-    /// Milliseconds of the default with 1, 2, 4, … threads, up to those that draw.
-    fn threads(&self) -> Result<Vec<Threads>, Failed> {
-        let all = self.work.pool.current_num_threads();
-        let counts = std::iter::successors(Some(1), |n| Some(n * 2)).take_while(|n| *n < all).chain([all]);
-        let own = Setting::of(&self.plan);
-        let timed = |threads: usize| -> Result<Option<Threads>, Failed> {
-            let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else {
-                return Ok(None);
-            };
-            let work = Work { pool: &pool, ..*self.work };
-            let sample = |_| self.subject.sample(&own, &work).map(|sample| sample.total);
-            let times: Vec<f64> = (0..=LEAST_ROUNDS).map(sample).collect::<Result<_, _>>()?;
-            Ok(Some(Threads { threads, ms: median(&times[1..]) }))
-        };
-        counts.filter_map(|threads| timed(threads).transpose()).collect()
-    }
-
-    fn point(&self, candidate: &Candidate, (err, counters): Erred, samples: &[Sample], floor: f64) -> Point {
+    fn point(&self, candidate: &Candidate, (err, drawn): Erred, samples: &[Sample], floor: f64) -> Point {
         Point {
             scene: self.options.name.clone(),
             families: candidate.families.clone(),
@@ -332,7 +262,9 @@ impl<'a> Making<'a> {
             err,
             t: Timing::of(samples),
             passes: timing::passes(samples),
-            counters,
+            counters: drawn.counters,
+            work: drawn.work,
+            spared: drawn.spared,
             pareto: false,
         }
     }
@@ -347,7 +279,7 @@ impl<'a> Making<'a> {
             height: self.plan.size[1],
             rounds,
             budget_s: self.options.budget.as_secs_f64(),
-            seconds: self.began.elapsed().as_secs_f64(),
+            seconds: self.schedule.elapsed().as_secs_f64(),
             cold_ms: self.cold_ms,
             flip: if cfg!(feature = "flip") { "measured" } else { "left out: this build is without it" },
         }
@@ -355,11 +287,8 @@ impl<'a> Making<'a> {
 
     /// Families with settings that the budget did not reach.
     fn unfinished(&self, points: &[Point]) -> Vec<Family> {
-        let is_measured =
-            |candidate: &&Candidate| points.iter().any(|point| point.knobs == candidate.setting);
-        let missing = self.sweep.candidates.iter().filter(|candidate| !is_measured(candidate));
         let mut families: Vec<Family> = Vec::new();
-        for family in missing.flat_map(|candidate| &candidate.families) {
+        for family in self.sweep.candidates[points.len()..].iter().flat_map(|candidate| &candidate.families) {
             if !families.contains(family) {
                 families.push(*family);
             }
@@ -389,29 +318,6 @@ fn check_size(plan: &Plan, limits: &Limits) -> Result<(), PlanError> {
     PlanError::over_memory("memory of the reference's triangles", bytes, limits)
 }
 
-/// Parts of the picture's pixels that a first look at the reference takes: one of sixteen.
-const PILOT: u32 = 4;
-
-/// The effort that a reference can have in `time`, told from a small one.
-fn affordable(subject: &super::reference::Subject, time: Duration, work: &Work) -> Result<Effort, Cancelled> {
-    let began = Instant::now();
-    let pilot = super::reference::Subject { size: subject.size.map(|side| side.div_ceil(PILOT)), ..*subject };
-    let few = Effort { base: 4, most: 4, noise: 0.0, aim: Aim::Pixel };
-    Reference::draw(&pilot, few, &|_| {}, work)?;
-    let sample = began.elapsed().as_secs_f64() / f64::from(few.base * pilot.size[0] * pilot.size[1]);
-    let pixels = f64::from(subject.size[0]) * f64::from(subject.size[1]);
-    let mean = time.as_secs_f64() / (sample * pixels);
-    // Up to a third of a picture's pixels needs most of the samples.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 4 and 1024")]
-    let samples = |share: f64, least: f64, most: f64| (mean * share).clamp(least, most) as u32;
-    Ok(Effort {
-        base: samples(0.3, 4.0, 32.0),
-        most: samples(2.5, 16.0, 1024.0),
-        noise: 5e-4,
-        aim: Aim::Pixel,
-    })
-}
-
 /// Finds the front among `points` and marks those on it.
 fn mark_front(points: &mut [Point], floor: f64) -> Vec<[f64; 2]> {
     let place = |point: &Point| Place {
@@ -419,12 +325,18 @@ fn mark_front(points: &mut [Point], floor: f64) -> Vec<[f64; 2]> {
         ms: point.t.total.median,
         interval: point.t.total.ci,
     };
-    let places: Vec<Place> = points.iter().map(place).collect();
-    let mut on_front = front::pareto(&places, floor);
-    // The control is the default under another name.
-    on_front.iter_mut().zip(&*points).for_each(|(on, point)| *on &= point.families != [Family::Control]);
-    points.iter_mut().zip(&on_front).for_each(|(point, on)| point.pareto = *on);
+    // The control is the default under another name, and no rival.
+    let mut rivals: Vec<&mut Point> =
+        points.iter_mut().filter(|point| point.families != [Family::Control]).collect();
+    let places: Vec<Place> = rivals.iter().map(|point| place(point)).collect();
+    let on_front = front::pareto(&places, floor);
+    rivals.iter_mut().zip(&on_front).for_each(|(point, on)| point.pareto = *on);
     front::staircase(&places, &on_front)
+}
+
+/// Samples of the whole picture.
+fn samples_of(truth: &Reference) -> f64 {
+    truth.samples.iter().map(|samples| f64::from(*samples)).sum()
 }
 
 fn told(truth: &Reference, seconds: f64) -> Truth {
@@ -435,7 +347,7 @@ fn told(truth: &Reference, seconds: f64) -> Truth {
     let masks = &truth.masks;
     Truth {
         floor: truth.noise,
-        mean_samples: truth.samples.iter().map(|samples| f64::from(*samples)).sum::<f64>() / count,
+        mean_samples: samples_of(truth) / count,
         most_samples: truth.samples.iter().copied().max().unwrap_or(0),
         seconds,
         masks: [part(&masks.edges), part(&masks.penumbrae), part(&masks.textured)],

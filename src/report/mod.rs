@@ -17,9 +17,11 @@ pub mod front;
 pub mod html;
 pub mod machine;
 mod make;
+mod options;
 pub mod plot;
 pub mod random;
 pub mod reference;
+mod schedule;
 pub mod selftest;
 pub mod setting;
 pub mod statistics;
@@ -28,7 +30,9 @@ mod sweep;
 mod timing;
 
 pub use fit::{Fit, Law, Metric};
-pub use make::{Options, Progress, Stage, make};
+pub use make::make;
+pub use options::Options;
+pub use schedule::{Progress, Stage};
 pub use setting::{Knob, Setting};
 pub use subject::Subject;
 pub use sweep::{Family, LeftOut};
@@ -83,9 +87,12 @@ pub struct Report {
     pub determinism: Determinism,
     /// The catalogue of stiff cases, worst margin first; empty where it was not asked for.
     pub stability: Vec<Measurement>,
-    /// Of the default to itself, measured as two settings: its interval holds 1, and half its width is the least
-    /// difference that can be claimed.
+    /// Of the default to itself, measured as two settings: half the width of its interval is the least difference that
+    /// can be claimed.
     pub aa_ratio: statistics::Spread,
+    /// Whether that interval holds 1, as it must if times are to be believed; null where there were too few rounds to
+    /// know.
+    pub aa_holds: Option<bool>,
 }
 
 impl Report {
@@ -159,9 +166,15 @@ pub struct Point {
     /// Medians of each pass in milliseconds, planning and encoding as PNG among them.
     #[serde(serialize_with = "as_map")]
     pub passes: Vec<(&'static str, f64)>,
-    /// What was done.
+    /// The short form of what was done, as a reply tells it.
     #[serde(serialize_with = "as_map")]
     pub counters: Vec<(&'static str, u64)>,
+    /// What was done, by its units.
+    #[serde(serialize_with = "as_map")]
+    pub work: Vec<(&'static str, u64)>,
+    /// What elisions spared, by their names.
+    #[serde(serialize_with = "as_map")]
+    pub spared: Vec<(&'static str, u64)>,
     /// Whether no other beats it in both error and time.
     pub pareto: bool,
 }
@@ -186,10 +199,21 @@ pub struct Parts {
     /// Of the default but one knob at its best.
     #[serde(serialize_with = "as_map")]
     pub repair_one: Vec<(Knob, f64)>,
-    /// Root of the sum of the squares of `degrade_one`.
+    /// Of everything at its best: what no knob mends.
+    pub best: f64,
+    /// What the parts add up to: the root of the best's square and of what each of `degrade_one` adds to it.
     pub sum: f64,
     /// Whether the parts are independent: their squares add up to the total's within 20 %.
     pub independent: bool,
+}
+
+impl Parts {
+    fn new(total: f64, best: f64, degrade_one: Vec<(Knob, f64)>, repair_one: Vec<(Knob, f64)>) -> Self {
+        let added: f64 = degrade_one.iter().map(|(_, error)| error * error - best * best).sum();
+        let square = (best * best + added).max(0.0);
+        let independent = (square / (total * total) - 1.0).abs() <= 0.2;
+        Self { total, best, degrade_one, repair_one, sum: square.sqrt(), independent }
+    }
 }
 
 /// The default with some threads.

@@ -22,6 +22,12 @@ pub struct Spread {
 const RESAMPLINGS: usize = 400;
 
 impl Spread {
+    /// Whether the interval holds `value`.
+    #[must_use]
+    pub fn holds(&self, value: f64) -> bool {
+        (self.ci[0]..=self.ci[1]).contains(&value)
+    }
+
     /// Of at least one value.
     ///
     /// # Panics

@@ -20,6 +20,31 @@ pub struct Subject {
     pub limits: Limits,
 }
 
+/// A finished frame, and what was done for it.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// sRGB codes and straight alpha.
+    pub bytes: Vec<[u8; 4]>,
+    /// The short form of what was done, as a reply tells it.
+    pub counters: Vec<(&'static str, u64)>,
+    /// What was done, by its units.
+    pub work: Vec<(&'static str, u64)>,
+    /// What elisions spared, by their names.
+    pub spared: Vec<(&'static str, u64)>,
+}
+
+impl Drawn {
+    fn of(frame: Frame) -> Self {
+        let Pixels::Rgba8 { pixels, .. } = frame.pixels else { unreachable!("colour is in bytes") };
+        Self {
+            bytes: pixels,
+            counters: frame.stats.entries().to_vec(),
+            work: frame.stats.tally.work().collect(),
+            spared: frame.stats.tally.savings().collect(),
+        }
+    }
+}
+
 impl Subject {
     /// The plan of `setting`.
     ///
@@ -34,15 +59,15 @@ impl Subject {
         Plan::new(&self.scene, &request, &self.limits)
     }
 
-    /// The frame at `setting`: its linear light before post, and its finished pixels.
+    /// The frame at `setting`: its linear light before post, and it finished.
     ///
     /// # Errors
     /// [`Failed`].
-    pub fn draw(&self, setting: &Setting, work: &Work) -> Result<(Vec<[f32; 4]>, Frame), Failed> {
+    pub fn draw(&self, setting: &Setting, work: &Work) -> Result<(Vec<[f32; 4]>, Drawn), Failed> {
         let plans = [self.plan(setting)?, self.showing(setting, Output::Radiance)?];
         let mut frames = pipeline::render_each(&plans, work)?.into_iter();
         let (finished, radiance) = (frames.next(), frames.next());
-        Ok((floats(radiance.expect("two plans")), finished.expect("two plans")))
+        Ok((floats(radiance.expect("two plans")), Drawn::of(finished.expect("two plans"))))
     }
 
     /// The linear light of the frame at `setting`, before post.

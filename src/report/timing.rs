@@ -16,7 +16,8 @@ use std::time::{Duration, Instant};
 pub struct Sample {
     /// Milliseconds from the request to the last pixel: planning and drawing.
     pub total: f64,
-    /// Milliseconds of all threads together; `None` where the system does not tell.
+    /// Milliseconds of all threads of the process together, those of other frames among them; `None` where the system
+    /// does not tell.
     pub cpu: Option<f64>,
     /// Milliseconds of each pass, `plan` and `encode` among them.
     pub passes: Vec<(&'static str, f64)>,
@@ -47,7 +48,9 @@ impl Subject {
         let planned = began.elapsed();
         let frame = pipeline::render(&plan, work)?;
         let drawn = began.elapsed();
-        let spent = thread_seconds().zip(cpu).map(|(after, before)| (after - before) * 1e3);
+        // A thread that ended meanwhile took its time with it.
+        let spent =
+            thread_seconds().zip(cpu).map(|(after, before)| (after - before) * 1e3).filter(|ms| *ms > 0.0);
         std::hint::black_box(encode::png(&frame));
         let mut passes = vec![("plan", milliseconds(planned))];
         passes.extend(frame.timings.iter());
@@ -111,8 +114,8 @@ impl Timing {
     #[must_use]
     pub fn of(samples: &[Sample]) -> Self {
         let totals: Vec<f64> = samples.iter().map(|sample| sample.total).collect();
-        let cpu: Option<Vec<f64>> = samples.iter().map(|sample| sample.cpu).collect();
-        Self { total: Spread::of(&totals), cpu: cpu.map(|times| median(&times)) }
+        let cpu: Vec<f64> = samples.iter().filter_map(|sample| sample.cpu).collect();
+        Self { total: Spread::of(&totals), cpu: (!cpu.is_empty()).then(|| median(&cpu)) }
     }
 }
 

@@ -15,6 +15,8 @@ const STAGES = {
   errors: "Comparing the settings with it…",
   components: "Comparing edges, shadows and textures…",
   timing: "Timing the settings against each other…",
+  ways: "Drawing it in other ways…",
+  stability: "Running the stiff cases…",
 };
 const WAITING = "Waiting for the server…";
 

@@ -63,16 +63,14 @@ async fn a_report_measures_what_the_scene_has() {
                 && point["floor"] == report["reference"]["floor"]
         );
     }
-    let errors: Vec<f64> = family(&report, &json!({ "knob": "samples" }))
-        .iter()
-        .map(|point| {
-            (point["knobs"]["samples"].as_f64(), point["err"]["edges"]["rmse"].as_f64().expect("a number"))
-        })
-        .filter(|(samples, _)| [Some(1.0), Some(16.0)].contains(samples))
-        .map(|(_, error)| error)
-        .collect();
-    assert_eq!(errors.len(), 2);
-    assert!((errors[0] - errors[1]).abs() > 0.05, "one sample and sixteen: {errors:?}");
+    let of_samples = family(&report, &json!({ "knob": "samples" }));
+    let at_edges = |samples: u32| {
+        let point = of_samples.iter().find(|point| point["knobs"]["samples"] == samples);
+        point.expect("it is measured")["err"]["edges"]["rmse"].as_f64().expect("a number")
+    };
+    // They err by N^-0.55 at the most (numerics: C.1), 16 by a fifth of what one does.
+    let (one, sixteen) = (at_edges(1), at_edges(16));
+    assert!(sixteen < 0.5 * one, "one sample errs by {one}, sixteen by {sixteen}");
 
     assert!(report["determinism"]["matrix"].as_array().is_some_and(|ways| !ways.is_empty()));
     assert_eq!((&report["determinism"]["differing"], &report["stability"]), (&json!([]), &json!([])));

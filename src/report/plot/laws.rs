@@ -4,16 +4,16 @@ use super::axes::Axes;
 use super::svg::{Stroke, Svg, Text};
 use super::{INK, QUIET, color, in_words};
 use crate::report::error::Region;
-use crate::report::fit::{Fit, Metric};
+use crate::report::fit::Fit;
 use crate::report::setting::Knob;
 use crate::report::sweep::Family;
 
 /// Draws the panel of `fit` into `frame`: left, top, right, bottom.
-pub fn draw(svg: &mut Svg, fit: &Fit, floor: f64, frame: [f64; 4]) {
+pub fn draw(svg: &mut Svg, fit: &Fit, frame: [f64; 4]) {
     let axes = Axes::around(fit.points.iter().copied(), frame);
     svg.text([frame[0], frame[1] - 26.0], &title(fit), Text::BOLD);
     svg.text([frame[0], frame[1] - 10.0], &verdict(fit), Text::QUIET);
-    axes.draw(svg, [x_name(fit.knob), y_name(fit)]);
+    axes.draw(svg, [x_name(fit.knob), fit.metric.word()]);
     if let Some([least, most]) = fit.window {
         for slope in [least, most] {
             let line = through_the_middle(fit, slope, &axes);
@@ -22,8 +22,7 @@ pub fn draw(svg: &mut Svg, fit: &Fit, floor: f64, frame: [f64; 4]) {
     }
     svg.line(&fitted(fit, &axes), Stroke::solid(INK, 1.4));
     for point in &fit.points {
-        let near = if point[1] < 3.0 * floor { ", near the reference's own error" } else { "" };
-        let title = format!("{}: {:.3e}{near}", point[0], point[1]);
+        let title = format!("{}: {:.3e}", point[0], point[1]);
         svg.disc(axes.place(*point), 4.2, color(Family::Knob(fit.knob)), &title);
     }
 }
@@ -46,16 +45,9 @@ fn x_name(knob: Knob) -> &'static str {
     }
 }
 
-fn y_name(fit: &Fit) -> &'static str {
-    match fit.metric {
-        Metric::Rmse => "RMSE",
-        Metric::Mae => "MAE",
-    }
-}
-
 /// `slope −0.66 ± 0.02, expected −0.85 to −0.55`
 fn verdict(fit: &Fit) -> String {
-    let slope = format!("{}: slope {:.2} ± {:.2}", y_name(fit), fit.slope, fit.se).replace('-', "−");
+    let slope = format!("{}: slope {:.2} ± {:.2}", fit.metric.word(), fit.slope, fit.se).replace('-', "−");
     match (fit.window, fit.pass, fit.e_inf) {
         (Some([least, most]), Some(pass), _) => {
             let mark = if pass { "✓" } else { "✗" };

@@ -38,7 +38,7 @@ pub fn svg(report: &Report) -> String {
         let (column, row) = (at % PANELS_A_ROW, at / PANELS_A_ROW);
         #[expect(clippy::cast_precision_loss, reason = "a few panels")]
         let (left, top) = (70.0 + column as f64 * 352.0, UPPER + row as f64 * ROW + 42.0);
-        laws::draw(&mut svg, fit, report.reference.floor, [left, top, left + 270.0, top + 160.0]);
+        laws::draw(&mut svg, fit, [left, top, left + 270.0, top + 160.0]);
     }
     svg.finish()
 }

@@ -82,7 +82,11 @@ fn draw_point(svg: &mut Svg, point: &Point, axes: &Axes) {
         point.knobs.parameters().iter().map(|(name, value)| format!("{name} {value}")).collect();
     let title = format!("{}: RMSE {error:.5}, {:.2} ms", knobs.join(", "), spread.median);
     let radius = if family == Family::Mixed { 3.0 } else { 4.2 };
-    svg.disc(at, radius, color(family), &title);
+    if point.near_floor {
+        svg.hollow(at, radius, color(family), &format!("{title}, near the reference's own error"));
+    } else {
+        svg.disc(at, radius, color(family), &title);
+    }
     if point.families.contains(&Family::Default) {
         svg.ring(at, 8.0, INK);
     }

@@ -94,6 +94,15 @@ impl Svg {
         ));
     }
 
+    /// A hollow disc with words to hover over.
+    pub fn hollow(&mut self, [x, y]: [f64; 2], radius: f64, color: &str, title: &str) {
+        self.push(format_args!(
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"#ffffff\" stroke=\"{color}\" \
+             stroke-width=\"1.6\"><title>{}</title></circle>",
+            escaped(title)
+        ));
+    }
+
     /// A circle around something.
     pub fn ring(&mut self, [x, y]: [f64; 2], radius: f64, color: &str) {
         self.push(format_args!(

@@ -1,7 +1,8 @@
-//! What pictures are measured against: a ray caster in f64 that shares no code with the pipeline.
+//! What pictures are measured against: a ray caster in f64 that shares no code with the pipeline. What a scene holds
+//! before either sees it they have in common: texels and their sRGB decoding, the table of a computed sky, meshes.
 //!
-//! In: a compiled scene and a settled camera. Out: radiance, the picture after its effects in linear
-//! light, and how much of both is noise. It reads like the textbook, and takes its time.
+//! In: a compiled scene and a settled camera. Out: radiance, how much of it is noise, and the picture after its
+//! effects in linear light. It reads like the textbook, and takes its time.
 //!
 //! ```text
 //! sequence → camera → world (bvh) → point → shading (texture, relief, light) → pixel → post
@@ -36,6 +37,7 @@ use light::Lamp;
 use pixel::{Pixel, Studio};
 use shading::Lighting;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 use world::World;
 
 /// What is drawn.
@@ -97,8 +99,6 @@ pub struct Reference {
     /// Linear red, green, blue, premultiplied with alpha, and alpha: before `post`, every sample clamped
     /// to 65504.
     pub radiance: Vec<[f64; 4]>,
-    /// Linear red, green and blue after `post`, clamped to 0–1, over white; not encoded.
-    pub color: Vec<[f64; 3]>,
     /// Samples that were spent on each pixel.
     pub samples: Vec<u32>,
     /// By how much the colours of `radiance`, clamped to 0–1, are off in the root mean square, told from
@@ -119,11 +119,11 @@ pub struct Masks {
     pub textured: Vec<bool>,
 }
 
-/// Pixels of one task: a few milliseconds at some hundred samples.
-const TASK: usize = 8;
+/// Samples of one task: some hundred microseconds, so that frames do not wait for a reference.
+const TASK: usize = 64;
 
-/// The part of the work that the first look at every pixel is told to be.
-const FIRST_LOOK: f64 = 0.7;
+/// Pixels that need more samples get as many times more, and are drawn anew.
+const MORE: u32 = 4;
 
 impl Reference {
     /// Draws `subject`. `progress` is told the share that is done, from several threads. The same machine
@@ -137,28 +137,52 @@ impl Reference {
         progress: &(dyn Fn(f64) + Sync),
         work: &Work,
     ) -> Result<Self, Cancelled> {
-        let studio = studio(subject);
-        let [width, height] = subject.size;
-        let places: Vec<[u32; 2]> = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
-        let tell = |share: f64| progress(FIRST_LOOK * share);
-        let mut pixels = draw_pixels(&studio, &places, effort, &tell, work)?;
-        // A few samples may all miss what covers a third of a pixel; what lies beside something is looked at again.
-        let closer = Effort { base: effort.base.max(effort.most / 4), ..effort };
-        let again = beside_detail(&pixels, subject.size, closer.base);
-        let again_places: Vec<[u32; 2]> = again.iter().map(|&at| places[at]).collect();
-        let tell = |share: f64| progress(FIRST_LOOK + (1.0 - FIRST_LOOK) * share);
-        let closer = draw_pixels(&studio, &again_places, closer, &tell, work)?;
-        again.into_iter().zip(closer).for_each(|(at, pixel)| pixels[at] = pixel);
-        Ok(Self::of(subject, &pixels))
+        Self::draw_until(subject, effort, None, progress, work)
     }
 
-    fn of(subject: &Subject, pixels: &[Pixel]) -> Self {
+    /// The same, but that no pixel gets more than [`Effort::base`] samples once the time is up.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn draw_until(
+        subject: &Subject,
+        effort: Effort,
+        until: Option<Instant>,
+        progress: &(dyn Fn(f64) + Sync),
+        work: &Work,
+    ) -> Result<Self, Cancelled> {
+        let studio = studio(subject);
+        work.check()?;
+        let steps = Steps::new(&effort);
+        let mut samples = effort.base;
+        let all: Vec<usize> = (0..subject.size[0] as usize * subject.size[1] as usize).collect();
+        let look = Look { studio: &studio, aim: effort.aim, samples, until: None };
+        let drawn = look.at(&all, &|share| progress(steps.share(0, share)), work)?;
+        let mut pixels: Vec<Pixel> = drawn.into_iter().map(|pixel| pixel.expect("without an end")).collect();
+        for step in 1..steps.count {
+            samples = effort.most.min(samples * MORE);
+            let again = unsettled(&pixels, subject.size, samples, &effort);
+            let look = Look { studio: &studio, aim: effort.aim, samples, until };
+            let drawn = look.at(&again, &|share| progress(steps.share(step, share)), work)?;
+            for (at, pixel) in again.into_iter().zip(drawn) {
+                pixels[at] = pixel.unwrap_or(pixels[at]);
+            }
+        }
+        Ok(Self::of(subject.size, &pixels))
+    }
+
+    /// The picture after the effects of `scene`: linear red, green and blue, clamped to 0–1, over white; not encoded.
+    #[must_use]
+    pub fn finished(&self, scene: &Scene) -> Vec<[f64; 3]> {
+        post::apply(&scene.post, self.size, &self.radiance)
+    }
+
+    fn of(size: [u32; 2], pixels: &[Pixel]) -> Self {
         let radiance: Vec<[f64; 4]> = pixels.iter().map(|pixel| pixel.radiance).collect();
         let squares: f64 = pixels.iter().map(|pixel| pixel.difference_squared).sum();
         let mask = |of: fn(&Pixel) -> bool| pixels.iter().map(of).collect();
         Self {
-            size: subject.size,
-            color: post::apply(&subject.scene.post, subject.size, &radiance),
+            size,
             samples: pixels.iter().map(|pixel| pixel.samples).collect(),
             // The mean of two halves is off by half of what they differ.
             noise: (squares / float(pixels.len())).sqrt() / 2.0,
@@ -186,35 +210,77 @@ fn studio<'a>(subject: &'a Subject<'a>) -> Studio<'a> {
     }
 }
 
-/// Draws the pixels at `places`.
-fn draw_pixels(
-    studio: &Studio,
-    places: &[[u32; 2]],
-    effort: Effort,
-    progress: &(dyn Fn(f64) + Sync),
-    work: &Work,
-) -> Result<Vec<Pixel>, Cancelled> {
-    let done = AtomicUsize::new(0);
-    let draw = |task: &[[u32; 2]]| -> Vec<Pixel> {
-        let pixels = task.iter().map(|&place| pixel::draw(studio, place, effort)).collect();
-        let before = done.fetch_add(task.len(), Ordering::Relaxed);
-        progress(float(before + task.len()) / float(places.len()));
-        pixels
-    };
-    let tasks = places.chunks(TASK).collect();
-    let pixels = work.map(tasks, || (), |(), task| draw(task))?;
-    Ok(pixels.into_iter().flatten().collect())
+/// The times that a pixel may be drawn, each with more samples.
+struct Steps {
+    count: u32,
 }
 
-/// Indices of the pixels with fewer than `samples` that show or touch an edge or a penumbra.
-fn beside_detail(pixels: &[Pixel], [width, height]: [u32; 2], samples: u32) -> Vec<usize> {
+impl Steps {
+    fn new(effort: &Effort) -> Self {
+        let grown = std::iter::successors(Some(effort.base.max(1)), |n| n.checked_mul(MORE));
+        let count = grown.take_while(|samples| *samples < effort.most).count();
+        Self { count: 1 + u32::try_from(count).unwrap_or(0) }
+    }
+
+    /// The share of the whole that is done with `share` of a step.
+    fn share(&self, step: u32, share: f64) -> f64 {
+        (f64::from(step) + share) / f64::from(self.count)
+    }
+}
+
+/// A look at some pixels, with so many samples each.
+struct Look<'a> {
+    studio: &'a Studio<'a>,
+    aim: Aim,
+    samples: u32,
+    /// What is not begun by then is left.
+    until: Option<Instant>,
+}
+
+impl Look<'_> {
+    /// The pixels of these numbers; `None` for those that the time was not enough for.
+    fn at(
+        &self,
+        numbers: &[usize],
+        progress: &(dyn Fn(f64) + Sync),
+        work: &Work,
+    ) -> Result<Vec<Option<Pixel>>, Cancelled> {
+        let done = AtomicUsize::new(0);
+        let draw = |task: &[usize]| -> Vec<Option<Pixel>> {
+            let is_over = self.until.is_some_and(|until| Instant::now() >= until);
+            let pixels = task.iter().map(|&number| (!is_over).then(|| self.pixel(number))).collect();
+            let before = done.fetch_add(task.len(), Ordering::Relaxed);
+            progress(float(before + task.len()) / float(numbers.len()));
+            pixels
+        };
+        let tasks = numbers.chunks((TASK / self.samples as usize).max(1)).collect();
+        let pixels = work.map(tasks, || (), |(), task| draw(task))?;
+        Ok(pixels.into_iter().flatten().collect())
+    }
+
+    fn pixel(&self, number: usize) -> Pixel {
+        let width = self.studio.subject.size[0] as usize;
+        #[expect(clippy::cast_possible_truncation, reason = "sides of a picture")]
+        let place = [number % width, number / width].map(|place| place as u32);
+        pixel::draw(self.studio, place, self.samples, self.aim)
+    }
+}
+
+/// The pixels that are to get `samples`, those first that need them most: whose samples do not agree well enough, and,
+/// up to a quarter of the most, those that show or touch an edge or a penumbra. A few samples may all miss what covers
+/// a third of a pixel.
+fn unsettled(pixels: &[Pixel], [width, height]: [u32; 2], samples: u32, effort: &Effort) -> Vec<usize> {
     let [width, height] = [width, height].map(|side| side as usize);
     let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
-    let has_detail = |at: usize| {
+    let is_beside_detail = |at: usize| {
         let (mut rows, columns) = (around(at / width, height), around(at % width, width));
         rows.any(|y| pixels[y * width..][columns.clone()].iter().any(|p| p.is_edge || p.is_penumbra))
     };
-    (0..pixels.len()).filter(|&at| pixels[at].samples < samples && has_detail(at)).collect()
+    let is_coarse = samples <= effort.most / 4;
+    let is_unsettled = |&at: &usize| pixels[at].noise > effort.noise || is_coarse && is_beside_detail(at);
+    let mut again: Vec<usize> = (0..pixels.len()).filter(is_unsettled).collect();
+    again.sort_by(|&a, &b| pixels[b].noise.total_cmp(&pixels[a].noise));
+    again
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a picture has at most 2²⁶ pixels")]

@@ -1,4 +1,4 @@
-//! One pixel: samples over its square, until they agree.
+//! One pixel: samples over its square, and how far they agree.
 
 use super::background;
 use super::bvh::Hit;
@@ -6,7 +6,7 @@ use super::camera::Camera;
 use super::sequence::Sequence;
 use super::shading::{Lighting, View, reads_maps};
 use super::world::{Layer, World};
-use super::{Aim, Effort, Subject};
+use super::{Aim, Subject};
 use glam::{DVec3, DVec4};
 
 /// What all pixels are drawn with.
@@ -22,11 +22,14 @@ pub struct Studio<'a> {
 }
 
 /// A finished pixel.
+#[derive(Clone, Copy)]
 pub struct Pixel {
     /// The mean of its samples, premultiplied.
     pub radiance: [f64; 4],
     /// How many there were.
     pub samples: u32,
+    /// How far the mean of its samples may be off.
+    pub noise: f64,
     /// Squared difference of its halves' means, clamped to 0–1: the mean of red, green and blue.
     pub difference_squared: f64,
     /// Whether samples saw what lies apart.
@@ -64,18 +67,11 @@ struct Drawing<'a> {
     is_textured: bool,
 }
 
-/// Draws a pixel.
-pub fn draw(studio: &Studio, place: [u32; 2], effort: Effort) -> Pixel {
-    let mut drawing = Drawing::new(studio, place, effort.aim);
+/// Draws a pixel with as many samples, two at least.
+pub fn draw(studio: &Studio, place: [u32; 2], samples: u32, aim: Aim) -> Pixel {
+    let mut drawing = Drawing::new(studio, place, aim);
     // Half of them for each half of the samples.
-    let most = effort.most.max(effort.base).max(2) / 2;
-    let mut count = (effort.base / 2).max(1);
-    drawing.sample(0..count);
-    while count < most && drawing.noise() > effort.noise {
-        let next = most.min(count * 2);
-        drawing.sample(count..next);
-        count = next;
-    }
+    drawing.sample((samples / 2).max(1));
     drawing.finish()
 }
 
@@ -95,9 +91,9 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Adds the samples of these numbers to both halves.
-    fn sample(&mut self, numbers: std::ops::Range<u32>) {
-        for number in numbers {
+    /// Adds so many samples to each half.
+    fn sample(&mut self, count: u32) {
+        for number in 0..count {
             for half in 0..2 {
                 let color = self.look(half, number);
                 self.halves[half].add(color);
@@ -174,6 +170,7 @@ impl<'a> Drawing<'a> {
     }
 
     fn finish(self) -> Pixel {
+        let noise = self.noise();
         let [a, b] = self.halves;
         let count = a.count + b.count;
         let shown = |half: Sum| (half.radiance / half.count).truncate().clamp(DVec3::ZERO, DVec3::ONE);
@@ -181,6 +178,7 @@ impl<'a> Drawing<'a> {
             radiance: ((a.radiance + b.radiance) / count).to_array(),
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counted in u32")]
             samples: count as u32,
+            noise,
             difference_squared: (shown(a) - shown(b)).length_squared() / 3.0,
             is_edge: self.is_edge,
             is_penumbra: self.seen.contains(&[true; 2]),

@@ -289,7 +289,8 @@ fn panes_are_laid_over_each_other_from_the_back() {
         assert!((0..4).all(|c| (pixel[c] - both[c]).abs() < 1e-7), "{pixel:?}");
     }
     let clear = panes(&json!({ "type": "transparent" }));
-    for (pixel, color) in clear.radiance.iter().zip(&clear.color) {
+    let finished = post::apply(&[], clear.size, &clear.radiance);
+    for (pixel, color) in clear.radiance.iter().zip(&finished) {
         // Premultiplied: 0.7 blue under 0.4 red; what is left of white shows behind.
         let expected = [0.4, 0.0, 0.42, 0.82];
         assert!((0..4).all(|c| (pixel[c] - expected[c]).abs() < 1e-7), "{pixel:?}");
@@ -413,9 +414,9 @@ fn samples_go_where_they_matter() {
     let reference = Reference::draw(&subject, effort, &progress, &work).expect("nobody cancels");
     for (samples, radiance) in reference.samples.iter().zip(&reference.radiance) {
         let is_partial = radiance[0] > 0.0 && radiance[0] < 1.0;
-        assert_eq!(*samples, if is_partial { 256 } else { 16 });
+        assert!(if is_partial { *samples == 256 } else { *samples < 256 }, "{samples} of {radiance:?}");
     }
-    assert!(reference.samples.contains(&256));
+    assert!(reference.samples.contains(&256) && reference.samples.contains(&16));
     assert_eq!(*most.lock().expect("nobody panics"), 1.0);
     cancel.store(true, Ordering::Relaxed);
     assert_eq!(Reference::draw(&subject, effort, &progress, &work), Err(Cancelled));
