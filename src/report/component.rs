@@ -38,8 +38,8 @@ const MOST_ENLARGED: f64 = 4.0;
 /// Pixels of the picture of shadows.
 const MOST_PIXELS: f64 = (1 << 20) as f64;
 
-/// The part of the time that the picture of shadows may take.
-const SHADOWS: f64 = 0.3;
+/// The part of the time that is left which a truth may take: others come after it.
+const TRUTH: f64 = 0.4;
 
 /// The laws that the error of a frame's components should follow, in the order of `knobs`.
 fn laws(plan: &Plan, knobs: &[Knob]) -> Vec<Law> {
@@ -155,15 +155,25 @@ impl Judges<'_> {
             let scene = without_textures(&self.subject.scene);
             let effort = Effort { base: 4, most: EDGE_SAMPLES, noise: NOISE, aim: Aim::Pixel };
             let subject = Subject { scene, request, ..self.subject.clone() };
-            self.coverage = Some(Judge::new(subject, best, effort, self.until, work)?);
+            self.coverage = Some(Judge::new(subject, best, effort, self.end_of_truth(), work)?);
         }
         Ok(self.coverage.as_ref().expect("made above"))
     }
 
-    /// The frame in the largest size that there is time for.
+    /// When a truth that is begun now has to do.
+    fn end_of_truth(&self) -> Instant {
+        let now = Instant::now();
+        now + self.until.saturating_duration_since(now).mul_f64(TRUTH)
+    }
+
+    /// The frame in the size at which shadows are judged: the largest that there is time for, but for soft ones,
+    /// which have pixels enough at their borders.
     fn enlarged(&self) -> FrameRequest {
+        if is_soft(self.plan) {
+            return self.subject.request.clone();
+        }
         let [width, height] = self.plan.size.map(f64::from);
-        let time = SHADOWS * self.until.saturating_duration_since(Instant::now()).as_secs_f64();
+        let time = self.end_of_truth().saturating_duration_since(Instant::now()).as_secs_f64();
         // Two samples of a pixel with shadows, and two without.
         let pixels = (time / (4.0 * self.sample_seconds)).min(MOST_PIXELS);
         let scale = (pixels / (width * height)).sqrt().clamp(1.0, MOST_ENLARGED);
@@ -182,8 +192,9 @@ impl Judges<'_> {
             let effort = Effort { base: 2, most, noise: NOISE, aim: Aim::Centre };
             let scene = without_textures(&self.subject.scene);
             let subject = Subject { scene, request: self.enlarged(), ..self.subject.clone() };
-            let judged = Some(seen_alike(&subject, best, self.until, work)?);
-            self.shadows = Some(Judge { judged, ..Judge::new(subject, best, effort, self.until, work)? });
+            let until = self.end_of_truth();
+            let judged = Some(seen_alike(&subject, best, until, work)?);
+            self.shadows = Some(Judge { judged, ..Judge::new(subject, best, effort, until, work)? });
         }
         Ok(self.shadows.as_ref().expect("made above"))
     }
