@@ -16,12 +16,35 @@ use std::sync::{Arc, atomic::AtomicBool};
 const ROUNDS: usize = 3;
 
 /// Steps of the fit.
-const STEPS: usize = 20_000;
+const STEPS: usize = 2000;
 
-/// What a frame took, in nanoseconds of one thread, and what was done for it.
+/// Which passes do which kinds of work.
+const PASSES: [(&[&str], &[usize]); 6] = [
+    (&["geometry"], &[0]),
+    (&["shadow"], &[1, 2]),
+    (&["shade", "sky"], &[3, 5, 6, 7, 8]),
+    (&["raster", "resolve"], &[4]),
+    (&["post"], &[9]),
+    (&["resample"], &[10]),
+];
+
+/// What a frame and its passes took on one thread, and what was done for it.
 struct Frame {
-    nanoseconds: f64,
+    total: f64,
+    passes: Vec<(&'static str, f64)>,
     amounts: [f64; KINDS],
+}
+
+impl Frame {
+    /// Nanoseconds of some passes.
+    fn took(&self, passes: &[&str]) -> f64 {
+        self.passes.iter().filter(|(name, _)| passes.contains(name)).map(|(_, ms)| ms * 1e6).sum()
+    }
+
+    /// Nanoseconds that some kinds of work should take.
+    fn expected(&self, rates: &[f64; KINDS], kinds: &[usize]) -> f64 {
+        kinds.iter().map(|&kind| rates[kind] * self.amounts[kind]).sum()
+    }
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -34,18 +57,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut frames = Vec::new();
     for (name, scene) in [("demo", demo)].into_iter().chain(pieces) {
         let scene = Arc::new(scene.compile(&Limits::default())?);
-        for [width, height] in [[320, 240], [800, 600]].map(|size| size.map(Some)) {
+        for [width, height] in [[320, 240], [640, 480]].map(|size| size.map(Some)) {
             let request = FrameRequest { width, height, ..FrameRequest::default() };
             let subject = Subject { scene: Arc::clone(&scene), request, limits: Limits::default() };
             frames.extend(measured(&subject, &work)?);
         }
         eprintln!("{name}: {} frames", frames.len());
     }
-    let rates = fitted(&frames);
+    let mut rates = [0.0; KINDS];
+    for (passes, kinds) in PASSES {
+        fit(&mut rates, &frames, passes, kinds);
+    }
     for ((kind, _), rate) in RATES.iter().zip(rates) {
         println!("{rate:9.3} ns: {kind}");
     }
-    let mut off: Vec<f64> = frames.iter().map(|frame| cost(&rates, frame) / frame.nanoseconds).collect();
+    let all: Vec<usize> = (0..KINDS).collect();
+    let mut off: Vec<f64> = frames.iter().map(|frame| frame.expected(&rates, &all) / frame.total).collect();
     off.sort_by(f64::total_cmp);
     let at = |part: usize| off[(off.len() - 1) * part / 100];
     println!("expected / measured: {:.2} in the median, {:.2} to {:.2} for 9 of 10", at(50), at(5), at(95));
@@ -60,32 +87,25 @@ fn measured(subject: &Subject, work: &Work) -> Result<Vec<Frame>, Box<dyn Error>
     let knobs = Knob::ALL.into_iter().filter(|knob| knob.check(&plan).is_ok());
     let settings = presets.chain(knobs.flat_map(|knob| knob.turned(own, &plan)));
     let frame = |setting: Setting| -> Result<Frame, Box<dyn Error>> {
-        let mut least = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            least = least.min(subject.sample(&setting, work)?.total * 1e6);
-        }
-        Ok(Frame { nanoseconds: least, amounts: amounts(&setting, &plan) })
+        let samples = (0..ROUNDS).map(|_| subject.sample(&setting, work)).collect::<Result<Vec<_>, _>>()?;
+        let best = samples.into_iter().min_by(|a, b| a.total.total_cmp(&b.total)).expect("some rounds");
+        Ok(Frame { total: best.total * 1e6, passes: best.passes, amounts: amounts(&setting, &plan) })
     };
     settings.map(frame).collect()
 }
 
-fn cost(rates: &[f64; KINDS], frame: &Frame) -> f64 {
-    rates.iter().zip(frame.amounts).map(|(rate, amount)| rate * amount).sum()
-}
-
-/// Rates of at least 0 with the least squares of relative errors, found one rate at a time.
-fn fitted(frames: &[Frame]) -> [f64; KINDS] {
-    let mut rates = [0.0; KINDS];
-    for step in 0..STEPS * KINDS {
-        let kind = step % KINDS;
+/// Finds the rates of some kinds of work, at least 0, with the least squares of what some passes are off by, as a part
+/// of the whole frame: one rate at a time, over and over.
+fn fit(rates: &mut [f64; KINDS], frames: &[Frame], passes: &[&str], kinds: &[usize]) {
+    for step in 0..STEPS * kinds.len() {
+        let kind = kinds[step % kinds.len()];
         let (mut product, mut square) = (0.0, 0.0);
         for frame in frames {
-            let part = frame.amounts[kind] / frame.nanoseconds;
-            product +=
-                part * (1.0 - (cost(&rates, frame) - rates[kind] * frame.amounts[kind]) / frame.nanoseconds);
+            let part = frame.amounts[kind] / frame.total;
+            let others = frame.expected(rates, kinds) - rates[kind] * frame.amounts[kind];
+            product += part * (frame.took(passes) - others) / frame.total;
             square += part * part;
         }
         rates[kind] = if square > 0.0 { (product / square).max(0.0) } else { 0.0 };
     }
-    rates
 }
