@@ -1,6 +1,6 @@
 //! A picture to a budget: the setting that a front has for it.
 
-use super::cost;
+use super::cost::{self, Estimate};
 use super::setting::{Knob, Setting};
 use super::sweep::{self, Family};
 use super::{Point, Report};
@@ -122,7 +122,7 @@ pub fn choose(
     let measured = measured.map(|front| (front, fitting(front.choices(plan), fits)));
     let (front, choices) = match measured.filter(|(_, choices)| !choices.is_empty()) {
         Some((front, choices)) => (Some(front), choices),
-        None => (None, fitting(modelled(plan, request, threads), fits)),
+        None => (None, fitting(all_modelled(plan, request, threads), fits)),
     };
     let within = |budget: f64, of: fn(&Choice) -> f64, best: fn(&Choice) -> f64| {
         let affordable = choices.iter().filter(|choice| of(choice) <= budget);
@@ -139,7 +139,7 @@ pub fn choose(
         Budget::MaxError(error) => by_error(error),
         Budget::Preset(preset) => {
             let known = front.and_then(|front| front.presets.iter().find(|(own, _)| *own == preset));
-            let itself = cost::expected(kept(Setting::of_preset(preset, plan), request), plan, threads);
+            let itself = modelled(kept(Setting::of_preset(preset, plan), request), plan, threads);
             match known {
                 Some((_, error)) => by_error(*error),
                 None if fits(&itself.setting) => Some(itself),
@@ -148,7 +148,7 @@ pub fn choose(
         }
     };
     // The frame as it is can be drawn, or there were no plan of it.
-    chosen.unwrap_or_else(|| cost::expected(own, plan, threads))
+    chosen.unwrap_or_else(|| modelled(own, plan, threads))
 }
 
 fn fitting(mut choices: Vec<Choice>, fits: &dyn Fn(&Setting) -> bool) -> Vec<Choice> {
@@ -156,12 +156,17 @@ fn fitting(mut choices: Vec<Choice>, fits: &dyn Fn(&Setting) -> bool) -> Vec<Cho
     choices
 }
 
+fn modelled(setting: Setting, plan: &Plan, threads: usize) -> Choice {
+    let Estimate { error, ms } = cost::expected(&setting, plan, threads);
+    Choice { setting, error, ms, source: Source::Model }
+}
+
 /// Settings from little work to much, and what they should cost.
-fn modelled(plan: &Plan, request: &FrameRequest, threads: usize) -> Vec<Choice> {
+fn all_modelled(plan: &Plan, request: &FrameRequest, threads: usize) -> Vec<Choice> {
     let presets = Preset::WORDS.iter().map(|(_, preset)| Setting::of_preset(*preset, plan));
     let knobs: Vec<Knob> = Knob::ALL.into_iter().filter(|knob| knob.check(plan).is_ok()).collect();
     let settings = presets.chain(sweep::mixed(plan, &knobs));
-    settings.map(|setting| cost::expected(kept(setting, request), plan, threads)).collect()
+    settings.map(|setting| modelled(kept(setting, request), plan, threads)).collect()
 }
 
 /// Whether `request` sets any knob itself.

@@ -3,7 +3,6 @@
 //! A model, no more: work counted from the plan, at rates that were measured once on other scenes. A report on the
 //! scene takes its place.
 
-use super::choose::{Choice, Source};
 use super::setting::Setting;
 use crate::model::texture;
 use crate::plan::{Face, Filter, Item, Plan, ShadowPass};
@@ -33,13 +32,21 @@ pub const KINDS: usize = 11;
 /// How much of the threads' time is work: two were 1.84 to 1.91 times as fast as one in the reports of `docs/reports`.
 const PARALLEL: f64 = 0.85;
 
+/// What is to be expected of a setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Root mean square error of linear light in 0–1.
+    pub error: f64,
+    /// Milliseconds, from the request to the last pixel.
+    pub ms: f64,
+}
+
 /// What the picture of `plan` should cost and err by at `setting` on `threads`.
 #[must_use]
-pub fn expected(setting: Setting, plan: &Plan, threads: usize) -> Choice {
+pub fn expected(setting: &Setting, plan: &Plan, threads: usize) -> Estimate {
     #[expect(clippy::cast_precision_loss, reason = "a count of threads")]
     let speed = 1.0 + PARALLEL * (threads as f64 - 1.0);
-    let ms = nanoseconds(&setting, plan) * 1e-6 / speed;
-    Choice { setting, error: error(&setting, plan), ms, source: Source::Model }
+    Estimate { error: error(setting, plan), ms: nanoseconds(setting, plan) * 1e-6 / speed }
 }
 
 fn nanoseconds(setting: &Setting, plan: &Plan) -> f64 {
@@ -125,10 +132,10 @@ mod tests {
             NewScene { document: Some(demo::document()), files: Some(demo::files()), ..NewScene::default() };
         let scene = Arc::new(new.compile(&Limits::default()).expect("a sound scene"));
         let plan = Plan::new(&scene, &FrameRequest::default(), &Limits::default()).expect("a plan");
-        let choices = Preset::WORDS.map(|(_, preset)| expected(Setting::of_preset(preset, &plan), &plan, 2));
-        assert!(choices.windows(2).all(|pair| pair[0].ms < pair[1].ms), "{choices:?}");
-        assert!(choices.windows(2).all(|pair| pair[0].error > pair[1].error), "{choices:?}");
-        let more = expected(Setting::of_preset(Preset::Normal, &plan), &plan, 8);
-        assert!(more.ms < choices[1].ms / 2.0);
+        let of = |preset, threads| expected(&Setting::of_preset(preset, &plan), &plan, threads);
+        let estimates = Preset::WORDS.map(|(_, preset)| of(preset, 2));
+        assert!(estimates.windows(2).all(|pair| pair[0].ms < pair[1].ms), "{estimates:?}");
+        assert!(estimates.windows(2).all(|pair| pair[0].error > pair[1].error), "{estimates:?}");
+        assert!(of(Preset::Normal, 8).ms < estimates[1].ms / 2.0);
     }
 }
