@@ -133,21 +133,27 @@ async fn picture(
     Ok(reply(call.name, app.renderer.render(scene, request, product).await?))
 }
 
-/// Says which settings a budget was settled into, and what is to be expected of them.
+/// Says which settings a budget was settled into, and by which query they give the same.
 pub(super) fn add_settings(response: &mut Response, choice: &Choice, pairs: &Pairs) {
+    let location = pairs.location(&choice.setting.parameters());
+    for (name, value) in [(RENDER_SETTINGS, Some(settings(choice))), (CONTENT_LOCATION, location)] {
+        if let Some(Ok(value)) = value.as_deref().map(HeaderValue::from_str) {
+            response.headers_mut().insert(name, value);
+        }
+    }
+}
+
+/// The settings that a budget became, what is to be expected of them, what says so, and whether that misses the budget.
+pub(super) fn settings(choice: &Choice) -> String {
     let parameters = choice.setting.parameters();
     let expected = [
         ("error", format!("{:.6}", choice.error)),
         ("ms", format!("{:.3}", choice.ms)),
         ("source", choice.source.word().to_owned()),
     ];
-    let settings = listed(parameters.iter().chain(&expected).map(|(name, value)| format!("{name}={value}")));
-    let values = [(RENDER_SETTINGS, Some(settings)), (CONTENT_LOCATION, pairs.location(&parameters))];
-    for (name, value) in values {
-        if let Some(Ok(value)) = value.as_deref().map(HeaderValue::from_str) {
-            response.headers_mut().insert(name, value);
-        }
-    }
+    let missed = (!choice.met).then(|| ("budget", "missed".to_owned()));
+    let said = parameters.iter().chain(&expected).chain(&missed);
+    listed(said.map(|(name, value)| format!("{name}={value}")))
 }
 
 fn reply(name: &str, rendered: Rendered) -> Response {

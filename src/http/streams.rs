@@ -246,6 +246,9 @@ pub(super) struct FrameEvent {
     /// By the names of `Render-Stats`
     #[schema(value_type = BTreeMap<String, u64>)]
     counts: Map<String, Value>,
+    /// The settings that the stream's budget became, as `Render-Settings` says them; absent without a budget
+    #[serde(skip_serializing_if = "Option::is_none")]
+    settings: Option<String>,
     /// Work that was done, by its units; what was none is absent
     #[schema(value_type = BTreeMap<String, u64>)]
     work: Map<String, Value>,
@@ -267,6 +270,7 @@ impl FrameEvent {
             bytes: picture.jpeg.len(),
             milliseconds: members(picture.timings.iter().map(|(pass, ms)| (*pass, (ms * 1e3).round() / 1e3))),
             counts: members(picture.stats.iter().copied()),
+            settings: picture.choice.as_ref().map(frames::settings),
             work: members(picture.tally.work()),
             spared: members(picture.tally.savings()),
         }

@@ -56,19 +56,28 @@ impl Subject {
 }
 
 impl Fronts {
-    /// That of the picture of `request`; else the newest one from another camera or time.
-    pub(super) fn of(&self, scene: &Scene, request: &FrameRequest) -> Option<Arc<Front>> {
+    /// That of the picture of `request` with `pixels`, or from another camera or time: of the size that is nearest,
+    /// and of those the newest.
+    pub(super) fn of(&self, scene: &Scene, request: &FrameRequest, pixels: f64) -> Option<Arc<Front>> {
         let asked = Subject::of(scene, request);
         let kept = self.kept();
-        let same = kept.iter().find(|(subject, _)| *subject == asked);
-        let found = same.or_else(|| kept.iter().find(|(subject, _)| subject.resembles(&asked)));
+        let fits = kept.iter().filter(|(subject, front)| subject.resembles(&asked) && front.tells_of(pixels));
+        let apart = |front: &Front| (front.pixels() / pixels).ln().abs();
+        let found = fits.min_by(|(a, of_a), (b, of_b)| {
+            (*a != asked).cmp(&(*b != asked)).then(apart(of_a).total_cmp(&apart(of_b)))
+        });
         found.map(|(_, front)| Arc::clone(front))
     }
 
+    /// Keeps `front` in place of one of the same picture in the same size, but for one that knows more settings.
     pub(super) fn keep(&self, scene: &Scene, request: &FrameRequest, front: Front) {
         let measured = Subject::of(scene, request);
         let mut kept = self.kept();
-        kept.retain(|(subject, _)| *subject != measured);
+        let is_same = |subject: &Subject, of: &Front| *subject == measured && of.pixels() == front.pixels();
+        if kept.iter().any(|(subject, of)| is_same(subject, of) && of.settings() > front.settings()) {
+            return;
+        }
+        kept.retain(|(subject, of)| !is_same(subject, of));
         kept.push_front((measured, Arc::new(front)));
         kept.truncate(FRONTS);
         drop(kept);

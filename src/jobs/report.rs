@@ -2,7 +2,7 @@
 //! its front decides from then on what a budget buys.
 
 use super::{CancelOnDrop, Engine, JobError, Renderer, caught};
-use crate::plan::{FrameRequest, Plan};
+use crate::plan::{FrameRequest, Output, Plan};
 use crate::report::choose::{Choice, Front, choose};
 use crate::report::{Failed, Options, Progress, Report, Setting, Stage, Subject, make};
 use crate::scene::Scene;
@@ -37,8 +37,13 @@ impl Engine {
     ) -> Result<(FrameRequest, Option<Choice>), JobError> {
         let Some(budget) = request.budget else { return Ok((request, None)) };
         let request = FrameRequest { budget: None, ..request };
+        // Data has no error, and takes no more or less time.
+        if !matches!(request.output, Output::Color | Output::Radiance) {
+            return Ok((request, None));
+        }
         let plan = self.plan(scene, &request)?;
-        let front = self.fronts.of(scene, &self.with_elisions(&request));
+        let pixels = f64::from(plan.size[0]) * f64::from(plan.size[1]);
+        let front = self.fronts.of(scene, &self.with_elisions(&request), pixels);
         let fits =
             |setting: &Setting| Plan::outline(scene, &setting.of_request(&request), &self.limits).is_ok();
         let choice =

@@ -18,6 +18,8 @@ pub struct Choice {
     pub ms: f64,
     /// What says so.
     pub source: Source,
+    /// Whether that is within the budget; where nothing is, the choice is what comes nearest to it.
+    pub met: bool,
 }
 
 /// Where an expectation comes from.
@@ -45,7 +47,10 @@ impl Source {
 pub struct Front {
     points: Vec<Measured>,
     presets: Vec<(Preset, f64)>,
+    /// Of the pictures that were timed.
     pixels: f64,
+    /// How many settings were.
+    settings: usize,
 }
 
 /// A setting of the front.
@@ -53,6 +58,8 @@ pub struct Front {
 struct Measured {
     setting: Setting,
     error: f64,
+    /// Milliseconds, from the request to the last pixel.
+    ms: f64,
     passes: Vec<(&'static str, f64)>,
 }
 
@@ -69,7 +76,8 @@ impl Front {
         let measured = |point: &Point| Measured {
             setting: point.knobs,
             error: point.err.clamped.rmse,
-            passes: point.passes.clone(),
+            ms: point.t.total.median,
+            passes: point.passes.iter().filter(|(pass, _)| *pass != "encode").copied().collect(),
         };
         let preset = |point: &Point| {
             let presets = point.families.iter().filter_map(|family| match family {
@@ -82,26 +90,48 @@ impl Front {
             points: report.points.iter().filter(|point| point.pareto).map(measured).collect(),
             presets: report.points.iter().flat_map(preset).collect(),
             pixels: f64::from(report.meta.width) * f64::from(report.meta.height),
+            settings: report.points.len(),
         })
+    }
+
+    /// Pixels of the pictures that were timed.
+    #[must_use]
+    pub fn pixels(&self) -> f64 {
+        self.pixels
+    }
+
+    /// How many settings were timed.
+    #[must_use]
+    pub fn settings(&self) -> usize {
+        self.settings
+    }
+
+    /// Whether it tells anything of pictures of so many pixels: in one much smaller than those that were timed,
+    /// or much larger, other work rules.
+    #[must_use]
+    pub fn tells_of(&self, pixels: f64) -> bool {
+        (1.0 / 16.0..=64.0).contains(&(pixels / self.pixels))
     }
 
     /// What its settings promise for the picture of `plan`.
     fn choices(&self, plan: &Plan) -> Vec<Choice> {
         let ratio = f64::from(plan.size[0]) * f64::from(plan.size[1]) / self.pixels;
-        let growth = |pass: &str| if OF_THE_SCENE.contains(&pass) { 1.0 } else { ratio };
         let choice = |point: &Measured| Choice {
             setting: point.setting,
             error: point.error,
-            ms: point
-                .passes
-                .iter()
-                .filter(|(pass, _)| *pass != "encode")
-                .map(|(pass, ms)| ms * growth(pass))
-                .sum(),
+            ms: point.ms * growth(&point.passes, ratio),
             source: Source::Measured,
+            met: true,
         };
         self.points.iter().map(choice).collect()
     }
+}
+
+/// How many times as long a frame of `passes` takes in a picture of `ratio` times the pixels.
+fn growth(passes: &[(&'static str, f64)], ratio: f64) -> f64 {
+    let sum = |of: &dyn Fn(&str) -> f64| passes.iter().map(|(pass, ms)| ms * of(pass)).sum::<f64>();
+    let all = sum(&|_| 1.0);
+    if all > 0.0 { sum(&|pass| if OF_THE_SCENE.contains(&pass) { 1.0 } else { ratio }) / all } else { ratio }
 }
 
 /// The setting that `budget` gets for the frame of `request`, which `plan` draws on `threads`, of those that `fit` into
@@ -148,7 +178,13 @@ pub fn choose(
         }
     };
     // The frame as it is can be drawn, or there were no plan of it.
-    chosen.unwrap_or_else(|| modelled(own, plan, threads))
+    let chosen = chosen.unwrap_or_else(|| modelled(own, plan, threads));
+    let met = match budget {
+        Budget::MaxMs(ms) => chosen.ms <= ms,
+        Budget::MaxError(error) => chosen.error <= error,
+        Budget::Preset(_) => true,
+    };
+    Choice { met, ..chosen }
 }
 
 fn fitting(mut choices: Vec<Choice>, fits: &dyn Fn(&Setting) -> bool) -> Vec<Choice> {
@@ -158,7 +194,7 @@ fn fitting(mut choices: Vec<Choice>, fits: &dyn Fn(&Setting) -> bool) -> Vec<Cho
 
 fn modelled(setting: Setting, plan: &Plan, threads: usize) -> Choice {
     let Estimate { error, ms } = cost::expected(&setting, plan, threads);
-    Choice { setting, error, ms, source: Source::Model }
+    Choice { setting, error, ms, source: Source::Model, met: true }
 }
 
 /// Settings from little work to much, and what they should cost.

@@ -112,7 +112,17 @@ async fn more_time_buys_less_error_and_more_error_less_time() {
     let (rough, exact) = (of("max_error=0.5").await, of("max_error=0.000001").await);
     assert_eq!(settings(&rough), settings(&hasty), "the fastest there is");
     assert_eq!(settings(&exact), settings(&patient), "the best there is");
+    assert!(
+        hasty.header("render-settings").ends_with("budget=missed"),
+        "{}",
+        hasty.header("render-settings")
+    );
     let between = of("max_error=0.02").await;
+    assert!(
+        between.header("render-settings").ends_with("source=model"),
+        "{}",
+        between.header("render-settings")
+    );
     assert!(number(&between, "error") <= 0.02, "{:?}", settings(&between));
 }
 
@@ -193,4 +203,19 @@ async fn a_report_decides_for_pictures_like_its_own() {
     let _joined = client.open(stream, &[]).await;
     assert_eq!(client.app.streams.count(), 1);
     drop(watched);
+}
+
+#[tokio::test]
+async fn data_takes_no_settings() {
+    let client = client().await;
+    for output in ["depth", "normal", "instance", "shadow_map"] {
+        let plain = client.get(&format!("/scenes/b/frame.png?output={output}")).await;
+        let reply = client.get(&format!("/scenes/b/frame.png?output={output}&preset=draft")).await;
+        assert!(
+            !reply.headers.contains_key("render-settings"),
+            "{output}: {}",
+            reply.header("render-settings")
+        );
+        assert!(reply.body == plain.body, "{output}");
+    }
 }

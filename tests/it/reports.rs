@@ -191,6 +191,7 @@ async fn what_no_report_can_be_is_refused() {
         ("budget_s=x", "budget_s"),
         ("knobs=sample", "knobs"),
         ("bugdet_s=9", "bugdet_s"),
+        ("output=depth", "output"),
     ] {
         let problem = report(&client, "json", query).await.problem(422);
         assert_eq!(problem["errors"][0]["parameter"], parameter, "{problem}");

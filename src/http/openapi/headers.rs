@@ -13,7 +13,8 @@ const MEANINGS: [(&str, &str); 5] = [
     (
         "Render-Settings",
         "Where the query has a budget: the settings that it was settled into, with the `error` and the `ms` to expect \
-         of them and the `source` of that, `measured` or `model`. A list of `name=value` with `, ` between; a value \
+         of them and the `source` of that, `measured` or `model`; with `budget=missed` where none is expected to keep \
+         the budget and these come nearest to it. A list of `name=value` with `, ` between; a value \
          is a word or a decimal with any number of digits, so it is no RFC 8941 dictionary: \
          `samples=4, render_scale=1, error=0.012345, ms=3.210, source=model`",
     ),
