@@ -10,20 +10,20 @@ use crate::plan::{Face, Filter, Item, Plan, ShadowPass};
 /// Kinds of work, and the nanoseconds that one thread takes for a unit of each.
 ///
 /// `cargo run --release --example cost_rates` measures them: those here are of an x86-64 core with AVX-512, on which the
-/// model says 0.7 of the milliseconds in the median, and between 0.3 and 1.3 of them in 9 of 10 frames. What the scenes
-/// of the demo and the gallery do not tell apart has a rate of 0: where there are lights there are shadows or textures.
+/// model says the milliseconds of the median frame, and between 0.4 and 1.9 of them in 9 of 10. What the scenes of the
+/// demo and the gallery do not tell apart has a rate of 0: where there are lights there are shadows or textures.
 pub const RATES: [(&str, f64); KINDS] = [
-    ("triangles in the view", 65.0),
-    ("triangles in shadow maps", 490.0),
-    ("texels of shadow maps", 0.5),
+    ("triangles in the view", 96.0),
+    ("triangles in shadow maps", 720.0),
+    ("texels of shadow maps", 0.73),
     ("drawn pixels", 0.0),
-    ("samples of drawn pixels", 6.1),
+    ("samples of drawn pixels", 9.0),
     ("lights at drawn pixels", 0.0),
-    ("shadows at drawn pixels", 37.0),
-    ("taps at drawn pixels", 1.6),
-    ("textures at drawn pixels", 31.0),
-    ("passes over drawn pixels", 18.0),
-    ("resampled pixels", 22.0),
+    ("shadows at drawn pixels", 54.0),
+    ("taps at drawn pixels", 2.4),
+    ("textures at drawn pixels", 46.0),
+    ("passes over drawn pixels", 26.0),
+    ("resampled pixels", 32.0),
 ];
 
 /// How many kinds of work there are.
