@@ -35,55 +35,71 @@ fn main() {
     }
 }
 
-/// What is measured: the demo, soft shadows, paper cranes, a scene that needs next to nothing, one that does not
-/// know what it needs, and one whose shadows fall on nothing.
+/// What is measured: the demo, soft shadows, paper cranes, a scene that needs next to nothing, the same with its colours
+/// graded, one that does not know what it needs, and one whose shadows fall on what is out of sight.
 fn cases() -> Vec<Case> {
     let of_gallery = |name: &'static str| {
         let new = gallery::find(name).expect("a piece of the gallery").to_scene();
         (name, Arc::new(new.compile(&Limits::default()).expect("the scene compiles")))
     };
-    let flat = json!({
+    let grading =
+        json!([{ "type": "tonemap" }, { "type": "grayscale", "amount": 0.3 }, { "type": "vignette" }]);
+    vec![
+        ("demo", compiled(&demo::document(), &demo::files())),
+        of_gallery("pcf-pcss"),
+        ("cranes", of_gallery("triangles").1),
+        ("flat triangle", compiled(&flat(&json!([])), &Files::default())),
+        ("graded", compiled(&flat(&grading), &Files::default())),
+        ("careless", compiled(&careless(), &Files::default())),
+        ("out of sight", compiled(&shadows_out_of_sight(), &Files::default())),
+    ]
+}
+
+/// One triangle of one colour on black, and what happens to the picture.
+fn flat(post: &Value) -> Value {
+    json!({
         "camera": { "position": [0, 0, 3], "target": [0, 0, 0] },
         "environment": { "background": { "type": "color", "color": [0, 0, 0] } },
         "materials": { "flat": { "shading": "unlit" } },
         "meshes": { "one": { "type": "triangles", "positions": [[-1, -1, 0], [1, -1, 0], [0, 1, 0]] } },
         "instances": { "one": { "mesh": "one", "material": "flat" } },
         "render": { "samples": 1 },
-    });
-    vec![
-        ("demo", compiled(&demo::document(), &demo::files())),
-        of_gallery("pcf-pcss"),
-        ("cranes", of_gallery("triangles").1),
-        ("flat triangle", compiled(&flat, &Files::default())),
-        ("careless", compiled(&careless(), &Files::default())),
-        ("no receivers", compiled(&without_receivers(), &Files::default())),
-    ]
-}
-
-/// A scene that asks for much that it does not need: lights that are out, a lamp with a ball above it that casts its
-/// shadow on nothing, balls behind the camera and beside the view, a map of one colour, effects of no strength.
-fn careless() -> Value {
-    let lamp = |z: f64, intensity: f64| json!({ "type": "point", "position": [0.5, 2, z], "intensity": intensity, "shadow": { "resolution": 512 } });
-    let ball = |at: [f64; 3]| json!({ "mesh": "ball", "material": "painted", "translation": at });
-    json!({
-        "camera": { "position": [2.5, 1.8, 3.5], "target": [0, 0.4, 0], "fov_y_deg": 35 },
-        "lights": { "lamp": lamp(1.5, 3.0), "out": lamp(-1.5, 0.0), "off": lamp(0.0, 0.0) },
-        "textures": { "paint": { "checker": { "colors": ["#b07030", "#b07030"], "cells": 1 }, "filter": "nearest" } },
-        "materials": { "painted": { "diffuse_map": "paint" } },
-        "meshes": { "ball": { "type": "sphere" }, "floor": { "type": "plane", "size": [8, 8] } },
-        "instances": { "a": ball([0.0, 0.5, 0.0]), "b": ball([0.3, 0.5, 20.0]), "c": ball([30.0, 0.5, 0.0]),
-            "d": ball([1.7, 0.5, 1.2]), "above": ball([0.5, 3.0, 1.5]),
-            "floor": { "mesh": "floor", "material": "painted" } },
-        "post": [{ "type": "blur", "radius": 0 }, { "type": "grayscale", "amount": 0 }],
+        "post": post,
     })
 }
 
-/// Balls under a sun, none of which takes a shadow.
-fn without_receivers() -> Value {
+/// A scene that asks for much that it does not need: lights that are out, a lamp with balls above it that cast their
+/// shadows on nothing, a crowd of balls behind the camera, a map of one colour, no highlights, effects of no strength.
+fn careless() -> Value {
+    let lamp = |z: f64, intensity: f64| json!({ "type": "point", "position": [0.5, 2, z], "intensity": intensity, "shadow": { "resolution": 512 } });
+    let ball = |at: [f64; 3]| json!({ "mesh": "ball", "material": "painted", "translation": at });
+    let mut document = json!({
+        "camera": { "position": [2.5, 1.8, 3.5], "target": [0, 0.4, 0], "fov_y_deg": 35 },
+        "lights": { "lamp": lamp(1.5, 3.0), "out": lamp(-1.5, 0.0), "off": lamp(0.0, 0.0),
+            "sky": { "type": "directional", "direction": [0.1, -1, 0] }, "fill": { "type": "directional", "direction": [1, -1, -1] } },
+        "textures": { "paint": { "checker": { "colors": ["#b07030", "#b07030"], "cells": 1 }, "filter": "nearest" } },
+        "materials": { "painted": { "diffuse_map": "paint" } },
+        "meshes": { "ball": { "type": "sphere" }, "floor": { "type": "plane", "size": [8, 8] } },
+        "instances": { "a": ball([0.0, 0.5, 0.0]), "d": ball([1.7, 0.5, 1.2]), "floor": { "mesh": "floor", "material": "painted" } },
+        "post": [{ "type": "blur", "radius": 0 }, { "type": "grayscale", "amount": 0 }],
+    });
+    for i in 0..6 {
+        let x = f64::from(i) * 1.5 - 4.0;
+        document["instances"][format!("behind{i}")] = ball([x, 0.5, 20.0]);
+        let mut above = ball([x * 0.2, 4.0, 1.5]);
+        above["receives_shadow"] = json!(false);
+        document["instances"][format!("above{i}")] = above;
+    }
+    document
+}
+
+/// Balls under a sun that take no shadow, and a floor behind the camera that does.
+fn shadows_out_of_sight() -> Value {
     let mut document = json!({
         "camera": { "position": [4, 4, 8], "target": [0, 0.4, 0], "fov_y_deg": 35 },
         "lights": { "sun": { "type": "directional", "direction": [-0.5, -1, -0.4], "shadow": {} } },
-        "meshes": { "ball": { "type": "sphere" } },
+        "meshes": { "ball": { "type": "sphere" }, "floor": { "type": "plane", "size": [8, 8] } },
+        "instances": { "floor": { "mesh": "floor", "translation": [0, 0, 24] } },
     });
     for i in 0..9 {
         let at = [f64::from(i % 3) * 1.5 - 1.5, 0.5, f64::from(i / 3) * 1.5 - 1.5];
