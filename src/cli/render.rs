@@ -68,7 +68,8 @@ fn chosen(choice: &Choice) -> String {
     let settings = choice.setting.parameters();
     let settings: Vec<String> = settings.iter().map(|(name, value)| format!("--{name} {value}")).collect();
     let (settings, error, ms) = (settings.join(" ").replace('_', "-"), choice.error, choice.ms);
-    format!("{settings}; expected: error {error:.4}, {ms:.1} ms ({})", choice.source.word())
+    let missed = if choice.met { "" } else { "; no setting is expected to keep the budget" };
+    format!("{settings}; expected: error {error:.4}, {ms:.1} ms ({}){missed}", choice.source.word())
 }
 
 #[cfg(test)]

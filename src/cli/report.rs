@@ -57,6 +57,7 @@ fn budget(text: &str) -> Result<Duration, String> {
 impl Report {
     /// Files → scene → report → files.
     pub(super) fn run(self) -> Result<(), Failure> {
+        self.out.iter().try_for_each(|path| check_folder(path))?;
         let writers: Vec<Writer> = self.out.iter().map(|path| writer(path)).collect::<Result<_, _>>()?;
         let request = self.request()?;
         let (renderer, scene) = self.source.open(self.machine.clone())?;
@@ -84,6 +85,16 @@ impl Report {
         let request = FrameRequest::read(&mut query);
         query.finish().map_err(|faults| Problem::query(&faults))?;
         Ok(request)
+    }
+}
+
+/// Whether there is a folder to write to: a report takes a while, and would be lost.
+fn check_folder(path: &Path) -> Result<(), Failure> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Err(Failure::new(path.display(), "there is no such folder"))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -94,7 +94,7 @@ pub fn fit(
     let mut judges = Judges { subject, plan, until, sample_seconds, coverage: None, shadows: None };
     let mut fits = Vec::new();
     for group in laws(plan, knobs).chunk_by(|a, b| a.knob == b.knob) {
-        if Instant::now() >= until {
+        if !judges.has_time() {
             break;
         }
         let (errors, floor) = judges.errors(group[0].knob, work)?;
@@ -158,6 +158,13 @@ impl Judges<'_> {
             self.coverage = Some(Judge::new(subject, best, effort, self.end_of_truth(), work)?);
         }
         Ok(self.coverage.as_ref().expect("made above"))
+    }
+
+    /// Whether the time suffices for the fewest samples of a truth.
+    fn has_time(&self) -> bool {
+        let pixels = f64::from(self.plan.size[0]) * f64::from(self.plan.size[1]);
+        let left = self.until.saturating_duration_since(Instant::now());
+        4.0 * pixels * self.sample_seconds < left.as_secs_f64()
     }
 
     /// When a truth that is begun now has to do.

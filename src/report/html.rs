@@ -1,7 +1,7 @@
 //! A report as a page: the figure, and the numbers behind it.
 
 use super::plot::{self, svg::escaped};
-use super::{Point, Report};
+use super::{Family, Point, Report};
 use std::fmt::Write;
 
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
@@ -54,17 +54,18 @@ fn reached(page: &mut String, report: &Report) {
         let time = reach.ms.map_or_else(|| "not reached".to_owned(), |ms| format!("{ms:.2} ms"));
         ("", vec![format!("{:.4} ({:.0}/255)", reach.error, reach.error * 255.0), time])
     });
-    table(page, "Time to reach an error", &["RMSE", "a frame takes"], rows);
+    table(page, "Time to reach an error, interpolated along the front", &["RMSE", "a frame takes"], rows);
     let rows = report.equal_time.iter().map(|at| {
         let error =
             at.error.map_or_else(|| "everything takes longer".to_owned(), |error| format!("{error:.5}"));
         ("", vec![format!("{} ms", at.ms), error])
     });
-    table(page, "Error at equal time", &["time", "least RMSE"], rows);
+    table(page, "Error at equal time, interpolated along the front", &["time", "least RMSE"], rows);
 }
 
 fn settings(page: &mut String, report: &Report) {
     let heads = [
+        "",
         "setting",
         "RMSE",
         "MAE",
@@ -79,7 +80,22 @@ fn settings(page: &mut String, report: &Report) {
         "processor ms",
     ];
     let rows = report.points.iter().map(|point| (if point.pareto { "front" } else { "" }, row(point)));
-    table(page, "Every setting that was measured; green: on the front", &heads, rows);
+    table(
+        page,
+        "Every setting that was measured; green: on the front, or not to be told from it by its interval",
+        &heads,
+        rows,
+    );
+}
+
+/// What a setting is called by itself.
+fn named(family: Family) -> Option<&'static str> {
+    match family {
+        Family::Default => Some("the scene as it is"),
+        Family::Control => Some("the same once more"),
+        Family::Preset(preset) => Some(preset.word()),
+        Family::Knob(_) | Family::Mixed => None,
+    }
 }
 
 fn row(point: &Point) -> Vec<String> {
@@ -88,6 +104,7 @@ fn row(point: &Point) -> Vec<String> {
     let (err, time) = (&point.err, &point.t);
     let near = if point.near_floor { " (near the reference's own)" } else { "" };
     vec![
+        point.families.iter().filter_map(|family| named(*family)).collect::<Vec<_>>().join(", "),
         knobs.join(", "),
         format!("{:.5}{near}", err.clamped.rmse),
         format!("{:.5}", err.clamped.mae),
@@ -109,7 +126,7 @@ fn parts(page: &mut String, report: &Report) {
     let rows = parts.degrade_one.iter().enumerate().map(|(at, (knob, error))| {
         ("", vec![knob.word().to_owned(), format!("{error:.5}"), format!("{:.5}", repaired(at))])
     });
-    let heads = ["knob", "all at their best but this", "this alone at its best"];
+    let heads = ["knob", "RMSE with the others at their best", "RMSE with this alone at its best"];
     table(page, "What the default's error is made of", &heads, rows);
     let verdict = if parts.independent {
         "add up to it within 20 %"
@@ -118,7 +135,7 @@ fn parts(page: &mut String, report: &Report) {
     };
     let _ = writeln!(
         page,
-        "<p>The default's RMSE is {:.5}; at its best everywhere it is {:.5}. With what each knob of the first \
+        "<p>The default's RMSE is {:.5}; with all of these at their best it is {:.5}. With what each knob of the first \
          column adds to that, {:.5}, the parts {verdict}.</p>",
         parts.total, parts.best, parts.sum
     );

@@ -19,7 +19,7 @@ use super::{AtTime, Failed, Meta, Parts, Point, Report, Threads, Truth};
 use crate::limits::Limits;
 use crate::pipeline::{Cancelled, Work};
 use crate::plan::request::Preset;
-use crate::plan::{Elisions, FrameRequest, Output, Plan, PlanError};
+use crate::plan::{Elisions, FrameRequest, Output, Plan, PlanError, QueryFault};
 use crate::settings::Simd;
 use std::time::Instant;
 
@@ -32,7 +32,7 @@ const TIMING: f64 = 0.8;
 const THREADS: f64 = 0.5;
 
 /// How good the reference is where the time suffices.
-const EFFORT: Effort = Effort { base: 4, most: 1024, noise: 5e-4, aim: Aim::Pixel };
+const EFFORT: Effort = Effort { base: 2, most: 1024, noise: 5e-4, aim: Aim::Pixel };
 
 /// Every setting but the default and its control is timed so often, or not at all; of fewer samples no interval is
 /// known.
@@ -111,6 +111,10 @@ impl<'a> Making<'a> {
         tell: Tell<'a>,
         work: &'a Work<'a>,
     ) -> Result<Self, Failed> {
+        if subject.request.output != Output::Color {
+            let fault = QueryFault::new("output", "must be color: a report is about colours");
+            return Err(PlanError::Query(vec![fault]).into());
+        }
         let schedule = Schedule::new(options.budget, tell);
         let subject = in_report_size(subject, options.width)?;
         let plan = Plan::new(&subject.scene, &subject.request, &subject.limits)?;
@@ -301,7 +305,7 @@ impl<'a> Making<'a> {
 fn in_report_size(subject: &Subject, width: u32) -> Result<Subject, Failed> {
     // A width without a height says nothing about the frame's shape.
     let own_width = subject.request.width.filter(|_| subject.request.height.is_some());
-    let asked = FrameRequest { output: Output::Color, width: own_width, ..subject.request.clone() };
+    let asked = FrameRequest { width: own_width, ..subject.request.clone() };
     let outline = Plan::outline(&subject.scene, &asked, &subject.limits)?;
     let [own_width, own_height] = outline.size.map(f64::from);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a picture's side")]
