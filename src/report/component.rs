@@ -335,8 +335,9 @@ mod tests {
         let plan = draw::plan(&scene, &request);
         let subject = Subject { scene, request, limits: Limits::default() };
         let until = Instant::now() + Duration::from_secs(600);
-        // So slow that no picture is enlarged.
-        let fits = fit(&subject, &plan, knobs, until, 1.0, &draw::work()).expect("nobody cancels");
+        // Slow enough that no picture is enlarged, and fast enough that all are drawn.
+        let sample_seconds = 2e-4;
+        let fits = fit(&subject, &plan, knobs, until, sample_seconds, &draw::work()).expect("nobody cancels");
         for fit in &fits {
             println!(
                 "{:?} of {:?}: {:.3} ± {:.3}, {:?}",

@@ -29,6 +29,7 @@ fn settings(reply: &Reply) -> Vec<(String, String)> {
     let members = reply.header("render-settings").split(", ");
     members
         .map(|member| member.split_once('=').expect("a member"))
+        .filter(|member| *member != ("budget", "missed"))
         .map(|(k, v)| (k.into(), v.into()))
         .collect()
 }

@@ -111,7 +111,7 @@ async fn who_asks_for_the_same_report_joins_it() {
 async fn what_is_measured_decides_what_a_budget_buys() {
     let client = client().await;
     report(&client, "json", QUERY).await;
-    let reply = client.get("/scenes/b/frame.png?preset=draft").await;
+    let reply = client.get("/scenes/b/frame.png?width=160&height=120&preset=draft").await;
     assert!(
         reply.header("render-settings").ends_with("source=measured"),
         "{}",
@@ -121,8 +121,21 @@ async fn what_is_measured_decides_what_a_budget_buys() {
     assert_eq!(explicit.body, reply.body);
     // Another scene content is another front.
     client.json(Method::PATCH, "/scenes/b", &json!({ "instances": { "ball": { "visible": false } } })).await;
-    let reply = client.get("/scenes/b/frame.png?preset=draft").await;
+    let reply = client.get("/scenes/b/frame.png?width=160&height=120&preset=draft").await;
     assert!(reply.header("render-settings").ends_with("source=model"));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_small_report_says_nothing_of_a_large_picture() {
+    let client = client().await;
+    report(&client, "json", QUERY).await;
+    let source = async |size: &str| {
+        let reply = client.get(&format!("/scenes/b/frame.png?{size}&preset=draft")).await;
+        reply.header("render-settings").rsplit("source=").next().map(str::to_owned)
+    };
+    // It is of 48 × 36 pixels.
+    assert_eq!(source("width=384&height=288").await.as_deref(), Some("measured"));
+    assert_eq!(source("width=400&height=300").await.as_deref(), Some("model"));
 }
 
 #[tokio::test(flavor = "multi_thread")]
