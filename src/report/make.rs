@@ -32,7 +32,7 @@ const TIMING: f64 = 0.8;
 const THREADS: f64 = 0.5;
 
 /// How good the reference is where the time suffices.
-const EFFORT: Effort = Effort { base: 2, most: 1024, noise: 5e-4, aim: Aim::Pixel };
+const EFFORT: Effort = Effort { base: 4, most: 1024, noise: 5e-4, aim: Aim::Pixel };
 
 /// Every setting but the default and its control is timed so often, or not at all; of fewer samples no interval is
 /// known.
