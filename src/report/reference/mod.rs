@@ -122,6 +122,9 @@ pub struct Masks {
 /// Samples of one task: some hundred microseconds, so that frames do not wait for a reference.
 const TASK: usize = 64;
 
+/// Samples of a pixel with a texture, whether they agree or not: of a few, texels agree by chance.
+const TEXTURED: u32 = 64;
+
 /// Pixels that need more samples get as many times more, and are drawn anew.
 const MORE: u32 = 4;
 
@@ -268,7 +271,7 @@ impl Look<'_> {
 
 /// The pixels that are to get `samples`, those first that need them most: whose samples do not agree well enough, and,
 /// up to a quarter of the most, those that show or touch an edge or a penumbra. A few samples may all miss what covers
-/// a third of a pixel.
+/// a third of a pixel. Up to [`TEXTURED`], also those that show a texture.
 fn unsettled(pixels: &[Pixel], [width, height]: [u32; 2], samples: u32, effort: &Effort) -> Vec<usize> {
     let [width, height] = [width, height].map(|side| side as usize);
     let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
@@ -277,7 +280,10 @@ fn unsettled(pixels: &[Pixel], [width, height]: [u32; 2], samples: u32, effort: 
         rows.any(|y| pixels[y * width..][columns.clone()].iter().any(|p| p.is_edge || p.is_penumbra))
     };
     let is_coarse = samples <= effort.most / 4;
-    let is_unsettled = |&at: &usize| pixels[at].noise > effort.noise || is_coarse && is_beside_detail(at);
+    let is_unsettled = |&at: &usize| {
+        let is_guess = pixels[at].is_textured && samples <= TEXTURED;
+        pixels[at].noise > effort.noise || is_guess || is_coarse && is_beside_detail(at)
+    };
     let mut again: Vec<usize> = (0..pixels.len()).filter(is_unsettled).collect();
     again.sort_by(|&a, &b| pixels[b].noise.total_cmp(&pixels[a].noise));
     again
